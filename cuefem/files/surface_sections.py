@@ -23,7 +23,7 @@ Index = NDArray[np.intp]
 
 SAME = 1e-6  # of the length: closer points are merged
 FLAT = 1e-5  # of the length: a triangle of a smaller axial extent is a flat face
-UPRIGHT = 1e-3  # rad: an axis closer to x, y or z is replaced by it
+UPRIGHT = 5e-4  # rad: an axis closer to x, y or z is replaced by it; a shaft 60 times as long as wide is then straight
 SLENDER = 5.0  # least ratio of length to largest diameter
 ROUND = 0.02  # relative: the two second moments of a section, and that of a solid section against a disc's
 STRAIGHT = 0.02  # of the diameter: the centre of a section off the axis

@@ -15,6 +15,7 @@ import cuefem as cf
 from cuefem.designs import Levels, Response, Study, Vary
 from cuefem.designs.store import SqliteStore
 from cuefem.files import InputError
+from cuefem.quantity.units import parse_number
 from tests.helpers.command_line import call
 from tests.helpers.invalid_input import assert_calls_refused, assert_refused, stored_rows
 from tests.helpers.surfaces import revolve, two_bodies, write_surface
@@ -55,15 +56,28 @@ BAR = revolve([(0, 0), *((x, 0.006) for x in np.linspace(0, 0.7, 30)), (0.7, 0)]
 CONE_AT_BUTT = revolve([(0, 0), (0, 0.006), (0.3, 0.006), (0.303, 0)], 16)
 CONE_AT_TIP = revolve([(0.3035, 0), (0.306, 0.006), (0.7, 0.007), (0.7, 0)], 16)
 SIGNALLING = struct.pack("<I", 1) + bytes(12) + struct.pack("<I", 0x7F80FF00) + bytes(34)
+
+
+def surfaces_at_limits(share: float) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Shafts at a share of each limit of length, roundness, straightness, facets and gaps."""
+    points, faces = BAR
+    across = points * (0, 1, 1)
+    waves = np.cos(3 * np.arctan2(points[:, 2], points[:, 1]))
+    return {
+        "short": revolve([(0, 0), (0, 0.015), (0.15 / share, 0.015), (0.15 / share, 0)], 16),
+        "oval": (points * (1, 1 + 0.01 * share, 1), faces),
+        "bent": (points + 2.94e-3 * share * np.outer((points[:, 0] - 0.35) ** 2, (0, 0, 1)), faces),
+        "wavy": (points + 0.0465 * share * across * waves[:, None], faces),
+        "in two bodies": two_bodies(5e-4 * share),
+    }
+
+
 SURFACES = {
     "open": (POINTS, FACES[1:]),
     "a triangle turned": (POINTS, np.concatenate([FACES[:20], FACES[20:21, ::-1], FACES[21:]])),
     "no volume": (POINTS, np.concatenate([FACES[:8], FACES[:8, ::-1]])),
-    "short": revolve([(0, 0), (0, 0.02), (0.15, 0.02), (0.15, 0)], 16),
-    "oval": (BAR[0] * (1, 1.05, 1), BAR[1]),
+    **surfaces_at_limits(1.05),
     "square": revolve([(0, 0), (0, 0.006), (0.7, 0.006), (0.7, 0)], 4),
-    "bent": (BAR[0] + 0.003 * np.outer(BAR[0][:, 0] ** 2, (0, 0, 1)), BAR[1]),
-    "a gap of 1 mm": two_bodies(1e-3),
     "a gap between round ends": (
         np.concatenate([CONE_AT_BUTT[0], CONE_AT_TIP[0]]),
         np.concatenate([CONE_AT_BUTT[1], CONE_AT_TIP[1] + len(CONE_AT_BUTT[0])]),
@@ -91,6 +105,12 @@ def test_load_surface_that_is_not_a_shaft_is_rejected(tmp_path: Path, request: p
         damaged.write_bytes(content(text))
         messages[name] = rejection(damaged)
     assert_refused("surfaces", messages, request)
+
+
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
+@pytest.mark.parametrize("surface", surfaces_at_limits(0.95).values(), ids=surfaces_at_limits(0.95))
+def test_surface_just_within_its_limits_is_read(surface: tuple[np.ndarray, np.ndarray], tmp_path: Path) -> None:
+    assert isinstance(cf.load(write_surface(tmp_path / "shaft.ply", *surface)), cf.Cue)
 
 
 KIM = cf.load(Path(__file__).parents[2] / "meshes" / "kim.toml")
@@ -167,4 +187,4 @@ def test_call_on_another_kind_or_size_is_rejected(
     (tmp_path / "studies").symlink_to(Path(__file__).parents[2] / "studies")
     cf.save(LUMPED, tmp_path / "lumped.toml")
     monkeypatch.chdir(tmp_path)
-    assert_calls_refused("file_calls", globals() | {"replace": replace}, request)
+    assert_calls_refused("file_calls", globals() | {"replace": replace, "parse_number": parse_number}, request)

@@ -104,6 +104,14 @@ def test_surface_moved_and_rotated_gives_the_same_shaft(seed: int) -> None:
         assert np.hstack(piece) == pytest.approx(np.hstack(other), rel=1e-6, abs=1e-12)
 
 
+@pytest.mark.parametrize("tilt", [3e-4, 7e-4, 9.9e-4])
+def test_surface_a_little_off_its_axis_gives_the_same_shaft(tilt: float) -> None:
+    """Up to a milliradian: a straight shaft whose axis is replaced by x must not look bent."""
+    points, faces = revolve(outline_of(KIM), 24)
+    (piece,) = section_shaft(aligned_surface(points + tilt * points[:, [1, 0, 2]] * (-1, 1, 0), faces)).pieces
+    assert np.hstack(piece) == pytest.approx([0.7, 0.012, 0.021, 0, 0], rel=1e-5)
+
+
 def test_polygon_faces_are_triangulated(tmp_path: Path) -> None:
     turn = 2 * np.pi * np.arange(12) / 12
     corners = [f"v {x} {6 * np.cos(t)} {6 * np.sin(t)}" for x in (0, 500) for t in turn]
