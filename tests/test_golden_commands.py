@@ -31,7 +31,8 @@ def sweep(folder: Path) -> list[list[object]]:
     )
     write_study(folder, STUDY.replace("count = 8", "count = 4"))
     outputs = ["-o", "best.toml", "-o", "page.html", "-o", "study.json"]
-    return [["study", "none.toml", *outputs], ["study", "study.toml", *outputs]]
+    front = ["study", "study.toml", "--front", "-o", "front.csv"]
+    return [["study", "none.toml", *outputs], ["study", "study.toml", *outputs], front]
 
 
 def scatter(folder: Path) -> list[list[object]]:
@@ -65,11 +66,12 @@ def trade_off(folder: Path) -> list[list[object]]:
 
 
 def comparison(folder: Path) -> list[list[object]]:
-    """A measured cue, compared; one whose weight contradicts its drawing; one with every kind of measurement."""
+    """A measured cue, compared; one whose weight contradicts its drawing; one with every kind of measurement; none."""
     measured_folder(folder / "cue")
     measured_folder(folder / "heavy", MEASURED_TOML.replace('"100 g"', '"160 g"'))
     measured_folder(folder / "all", MEASURED_TOML + OTHER_KINDS + KNOWN)
-    return [["compare", name, "-o", f"{name}.html"] for name in ("cue", "heavy", "all")]
+    (measured_folder(folder / "bare") / "measured.toml").unlink()
+    return [*(["compare", name, "-o", f"{name}.html"] for name in ("cue", "heavy", "all")), ["compare", "bare"]]
 
 
 def beside(folder: Path) -> list[list[object]]:
@@ -131,16 +133,29 @@ def surfaces(folder: Path) -> list[list[object]]:
     ]
 
 
+def convert(folder: Path) -> list[list[object]]:
+    """A profile, a cue and a scene, with options."""
+    (folder / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n", encoding="utf-8")
+    effects = cf.PointMass(position=0.1, mass=0.005), cf.Elevation(0.1), cf.AxialWaves(1.45, 0.03, 4400.0)
+    cf.save(kim(), folder / "cue.toml")
+    cf.save(replace(SPRING, effects=effects), folder / "scene.toml")
+    return [
+        ["convert", "shaft.csv", "shaft.toml", "--material", "ash"],
+        ["convert", "cue.toml", "new.toml", "--body-mass", "15 oz"],
+        ["convert", "scene.toml", "shaft.toml", "--body-mass", "0.4 kg", "--force"],
+    ]
+
+
 def parts(folder: Path) -> list[list[object]]:
     """Parts that a file may name."""
     return [["parts"]]
 
 
 def clamped(folder: Path) -> list[list[object]]:
-    """A stroke whose simpler models have no end mass."""
+    """A stroke whose simpler models have no end mass, and leather too soft for any."""
     tip, clamp = cf.Tip(0.75, 0.7, contact_time=2e-3), cf.Support(0.01, 1e8)
     cf.save(cf.Scene(kim(), tip=tip, stroke=cf.Stroke(offset=0.3), effects=(clamp,)), folder / "clamped.toml")
-    return [["strike", "clamped.toml"]]
+    return [["strike", "clamped.toml"], ["report", "plain maple", "--leather", "1 MPa"]]
 
 
 def written(path: Path) -> str:
@@ -154,7 +169,21 @@ HEAVY = [pytest.param(each, marks=pytest.mark.heavy) for each in (beside, surfac
 
 @pytest.mark.parametrize(
     "prepare",
-    [sweep, scatter, optimum, optimum_of_woods, trade_off, comparison, shop, like, estimate, parts, clamped, *HEAVY],
+    [
+        sweep,
+        scatter,
+        optimum,
+        optimum_of_woods,
+        trade_off,
+        comparison,
+        shop,
+        like,
+        estimate,
+        convert,
+        parts,
+        clamped,
+        *HEAVY,
+    ],
 )
 def test_written_files_equal_golden_file(
     prepare: Callable[[Path], list[list[object]]],

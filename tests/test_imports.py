@@ -109,23 +109,6 @@ def loads(statement: ast.AST) -> set[str]:
     return set()
 
 
-@cache
-def loaded_at_top(module: str) -> set[str]:
-    """The modules that the top of a module's file imports; of a library's module none is read."""
-    tree = modules().get(module)
-    return set() if tree is None else {name for one in tree.body for name in loads(one)}
-
-
-def loaded_with(module: str) -> set[str]:
-    """The modules that an import of a module loads, by the imports at the top of files."""
-    found, left = set[str](), {module}
-    while left:
-        name = left.pop()
-        found.add(name)
-        left |= loaded_at_top(name) - found
-    return found
-
-
 def test_modules_of_package_have_no_circle() -> None:
     """Neither by imports at the top nor by those for types or inside functions."""
     needed = {
@@ -135,19 +118,6 @@ def test_modules_of_package_have_no_circle() -> None:
     assert len(needed["cuefem.cli.request"] & modules().keys()) > 5
     graph = {module: (names & modules().keys()) - {module} for module, names in needed.items()}
     assert [*TopologicalSorter(graph).static_order()]  # CycleError names a circle
-
-
-def test_import_inside_function_loads_what_its_file_does_not() -> None:
-    """An import inside a function has one reason: a command that does not call it does without that library or file."""
-    inner = [
-        (module, name)
-        for module, tree in modules().items()
-        for one in walk(tree)
-        if one.col_offset > 0
-        for name in loads(one)
-    ]
-    assert 20 <= len(inner) <= 44
-    assert [(module, name) for module, name in inner if name in loaded_with(module)] == []
 
 
 def test_no_two_classes_of_package_have_one_name() -> None:

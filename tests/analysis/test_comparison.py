@@ -76,7 +76,4 @@ def test_comparison_miscue_has_no_squirt() -> None:
     assert not {"squirt", "pivot_length"} & {*compared.differences["b"]}
     (sentence,) = compared.gaps()
     assert sentence.startswith("b and a cannot be compared in squirt: miscue at b/R 0.8")
-    assert str(compared).count("miscue at") == 1
-    page = compared.to_html("compare")
-    assert f'role="alert">{sentence[:20]}' in page
-    assert (page.count("miscue at"), "<h1>a and b: compared</h1>" in page) == (1, True)
+    assert str(compared).count("miscue at") == compared.to_html("compare").count("miscue at") == 1

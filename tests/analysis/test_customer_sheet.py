@@ -12,7 +12,7 @@ import pytest
 
 import cuefem as cf
 from tests.helpers.command_line import call, stdout_of
-from tests.helpers.invalid_input import assert_rejects
+from tests.helpers.invalid_input import assert_refused, rejected, stored_rows
 
 PROFILE = "x (in),diameter (in)\n0,.505\n14,.520\n29,.845\n"
 SHOP = """[shop]
@@ -109,31 +109,15 @@ def test_limits_of_a_shop_are_those_of_improve(drawing: Path) -> None:
     assert "Limits: wall .096 in or more" in stdout_of("improve", drawing, "--wall", ".096 in", "--keep", "wood")
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        (("name =", "nmae ="), "shop.toml: shop.nmae: unknown key; did you mean 'name'?"),
-        (("[defaults]", "[default]"), "shop.toml: default: unknown key; did you mean 'defaults'?"),
-        (('"us"', '"inch"'), "shop.toml: defaults.units: must be metric or us; got 'inch'"),
-        (('"12 Main', '"' + 81 * "x"), "shop.toml: shop.line: must have at most 80 characters"),
-        (("logo.svg", "pro.csv"), "pro.csv: cannot be read"),
-        (("logo.svg", "shafts/pro.csv"), "pro.csv: must be a picture for the logo: PNG, JPEG, GIF or SVG"),
-        (("logo.svg", "large.png"), "large.png: must be a file of at most 1 MB; got 1.000001"),
-    ],
-)
-def test_shop_file_or_logo_of_another_kind_is_one_line(change: tuple[str, str], message: str, drawing: Path) -> None:
-    (drawing.parents[1] / "large.png").write_bytes(bytes(1_000_001))
-    (drawing.parents[1] / "shop.toml").write_text(SHOP.replace(*change))
-    assert_rejects(message, "report", drawing, "--sheet", "-o", drawing.with_name("0142.html"))
-    assert not drawing.with_name("0142.html").exists()
-
-
-def test_limits_and_order_of_another_kind_are_one_line(drawing: Path) -> None:
-    (drawing.parents[1] / "shop.toml").write_text(SHOP.replace(".120 in", ".001 in"))
-    assert_rejects("shop.toml: defaults.limits.wall: wall must be at least .008 in; got .001 in", "improve", drawing)
-    cue = drawing.with_name("cue.toml")
-    cue.write_text('shaft = "conical taper"\n[order]\ncostumer = "A"\n')
-    assert_rejects("cue.toml: order.costumer: unknown key; did you mean 'customer'?", "modes", cue)
+def test_shop_file_or_logo_of_another_kind_is_refused(drawing: Path, request: pytest.FixtureRequest) -> None:
+    """Each row: a command, what is replaced in the shop's file, its replacement."""
+    shop, messages = drawing.parents[1], {}
+    (shop / "large.png").write_bytes(bytes(1_000_001))
+    for row in stored_rows("shop_files"):
+        command, change = row.replace("LONG", 81 * "x").split(" | ")
+        (shop / "shop.toml").write_text(SHOP.replace(*change.split(" -> ")))
+        messages[row] = rejected(shop, *command.split(), drawing, "-o", drawing.with_name("0142.html"))
+    assert_refused("shop_files", messages, request)
 
 
 @pytest.mark.heavy

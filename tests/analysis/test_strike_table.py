@@ -2,11 +2,14 @@
 
 import json
 import math
+import os
 import shutil
 import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from unittest.mock import patch
 
 import numpy as np
@@ -18,7 +21,6 @@ from cuefem.analysis.strike_table import StrikeTable
 from studies.games.games import RANDOM, SEED, pooltool_strike
 from studies.pages import STUDIES
 from tests.helpers.command_line import stdout_of
-from tests.helpers.pooltool import in_pooltool
 from tests.test_golden_files import assert_golden, drawing_text, page_text, rounded
 
 SCENE = cf.Scene(cf.LumpedCue(0.54, 0.01), cf.Ball(0.17, 0.028575), cf.Tip(0.75, 0.6, 1e-3))
@@ -76,15 +78,6 @@ def test_strokes_beyond_the_table_are_held_and_say_so(table: StrikeTable) -> Non
             table.at(*wrong)
 
 
-def test_command_writes_the_table_of_the_call(tmp_path: Path, table: StrikeTable) -> None:
-    cf.save(SCENE, tmp_path / "cue.toml")
-    arguments = ("strike", tmp_path / "cue.toml", "--format", "table", "--speeds", "1 m/s", "4 m/s")
-    with patch.multiple(strike_grid, COARSE=3, STROKES=12):
-        assert "wrote" in stdout_of(*arguments, "-o", tmp_path / "table.json")
-    record = json.loads((tmp_path / "table.json").read_text("utf-8"))
-    assert record["squirt_over_offset"] == pytest.approx(np.array(table.squirt_over_offset), rel=1e-9)
-
-
 def test_javascript_reads_the_table_as_python_does(table: StrikeTable, tmp_path: Path) -> None:
     if shutil.which("node") is None:
         pytest.skip("no node here: the readers in JavaScript are not run")
@@ -106,7 +99,7 @@ def test_script_and_module_are_one_reader() -> None:
     assert script.partition("\nif (typeof module")[0] == module.replace("export default ", "").strip()
 
 
-def test_command_writes_tables_of_many_cues(tmp_path: Path) -> None:
+def test_command_writes_the_tables_of_the_call(tmp_path: Path, table: StrikeTable) -> None:
     cf.save(SCENE, tmp_path / "one.toml")
     cf.save(replace(SCENE, cue=cf.LumpedCue(0.54, 0.005)), tmp_path / "other.toml")
     files = [tmp_path / name for name in ("one.toml", "other.toml")]
@@ -114,7 +107,7 @@ def test_command_writes_tables_of_many_cues(tmp_path: Path) -> None:
         out = stdout_of("strike", *files, "--format", "table", "--speeds", "1 m/s", "4 m/s", "-o", tmp_path / "tables")
     assert out.count("wrote") == 2
     one, other = (json.loads((tmp_path / "tables" / f"{name}.json").read_text("utf-8")) for name in ("one", "other"))
-    assert one["squirt_over_offset"][0][0] > 1.5 * other["squirt_over_offset"][0][0]
+    assert one["squirt_over_offset"] == pytest.approx(np.array(table.squirt_over_offset), rel=1e-9)
     assert one["pooltool"]["CueSpecs"]["end_mass"] > 1.5 * other["pooltool"]["CueSpecs"]["end_mass"]
 
 
@@ -165,6 +158,25 @@ print(json.dumps(found))
 """
 
 
+def in_pooltool(sent: Any) -> Any:
+    """What the program prints as JSON, in this Python or in POOLTOOL_PYTHON, which .ci/pooltool makes.
+
+    pooltool 0.6.0 requires a development build of its graphics that is not on PyPI, so that pip installs 0.3.3, which
+    has no end mass, and `cuefem[pooltool]` cannot exist.
+    """
+    has_it = "from importlib.util import find_spec; raise SystemExit(find_spec('pooltool') is None)"
+    pythons = [python for python in (sys.executable, os.environ.get("POOLTOOL_PYTHON", "")) if python]
+    found = [
+        python for python in pythons if subprocess.run([python, "-c", has_it], capture_output=True).returncode == 0
+    ]
+    if not found:
+        pytest.skip("no pooltool here: POOLTOOL_PYTHON names the Python of an environment that has it")
+    asked = {"input": json.dumps(sent), "capture_output": True, "text": True, "cwd": STUDIES.parent}
+    done = subprocess.run([found[0], "-c", IN_POOLTOOL], **asked)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
 @pytest.mark.heavy
 def test_pooltool_strikes_by_the_table_and_plays_whole_shots(table: StrikeTable) -> None:
     """pooltool aims along y; its offset is positive to the left, our squirt then to the right."""
@@ -175,7 +187,7 @@ def test_pooltool_strikes_by_the_table_and_plays_whole_shots(table: StrikeTable)
         "strokes": [*strokes, (example["speed"], example["offset"], 90.0)],
         "shot": (3.0, 0.3, 0.2),
     }
-    found = in_pooltool(IN_POOLTOOL, sent)
+    found = in_pooltool(sent)
     *others, (of_example, _) = found["strokes"]
     (own_x, own_y, _), _ = of_example["own"]
     assert math.atan2(own_x, own_y) == pytest.approx(example["table"]["squirt"], rel=1e-9)

@@ -47,6 +47,9 @@ PAIR = {("E", "rho"): 0.5}
 CONTRADICTING = {("E", "rho"): 0.9, ("rho", "time"): 0.9, ("E", "time"): -0.9}
 RUNS: dict[str, Callable[[], object]] = {
     "scatter of miscues": lambda: cf.study(scattered(vary=(TIME,), count=2, response="squirt(0.9)")),
+    "front of one response": lambda: cf.study(varying("stroke.speed", 1.0, 2.0)).save("none.csv", front=True),
+    "text as output": lambda: cf.study(varying("stroke.speed", 1.0, 2.0)).save("none.docx"),
+    "best of a tolerance analysis": lambda: cf.study(scattered(vary=(TIME,), count=2)).save("none.toml"),
     "unreachable limit": lambda: optimum(STIFF, rounds=1),
     "unreachable target": lambda: optimum(replace(PROBLEM, target=0.01), rounds=1),
     "miscue at every design": lambda: optimum(MISCUE, rounds=1),

@@ -21,7 +21,7 @@ from studies.pages import STUDIES
 from tests.helpers.command_line import stdout_of
 from tests.helpers.cues import kim, low_deflection
 from tests.helpers.invalid_input import assert_rejects
-from tests.helpers.sweeps import GRID, OPTIMUM, write_study
+from tests.helpers.sweeps import OPTIMUM, write_study
 
 STUDY = STUDIES / "design" / "optimum.toml"
 OPTIMAL = {
@@ -208,19 +208,6 @@ def test_trade_off_is_never_worse_than_a_grid_and_evenly_spread(tmp_path: Path) 
     others = cf.study(replace(found.study, vary=grid)).responses
     for low, least in zip(stiffness, slope, strict=True):
         assert least <= others["squirt_slope"][others["tip_stiffness"] >= low * (1 - 1e-6)].min() * (1 + 1e-6)
-
-
-@pytest.mark.heavy
-def test_front_of_a_sweep_is_written_alone(tmp_path: Path) -> None:
-    """The rows of its Pareto front; refused for one response, which trades off with none."""
-    path = write_study(tmp_path)
-    stdout_of("study", path, "--front", "-o", tmp_path / "front.csv")
-    rows = (tmp_path / "front.csv").read_text(encoding="utf-8").splitlines()[1:]
-    assert {int(row.partition(",")[0]) for row in rows} == {*cf.study(path).front}
-    assert 1 < len(rows) < 32
-    one = cf.study(write_study(tmp_path, GRID.replace('["end_mass", "mass"]', '["mass"]')))
-    with pytest.raises(cf.InputError, match="has no Pareto front to write"):
-        one.save(tmp_path / "none.csv", front=True)
 
 
 @pytest.mark.heavy

@@ -1,6 +1,5 @@
 """A calibration on one shaft: its statistics, its file, and what is rejected (verification)."""
 
-import json
 import math
 import re
 from dataclasses import replace
@@ -15,7 +14,6 @@ from cuefem.measurements.calibration import Calibration
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.uncertainty import MODEL_ERROR, RATIO_FLOOR, SHAFT_ERROR, squirt_of
 from tests.helpers.command_line import as_json, call, stdout_of
-from tests.helpers.measured_cues import measured_folder
 
 PREDATOR = Path(__file__).parents[2] / "studies/measured/predator_z"
 OLD = cf.usual_scene(cf.load("plain maple"))
@@ -125,8 +123,7 @@ def test_estimate_writes_a_calibration_that_every_command_takes(tmp_path: Path) 
     record = as_json("report", "low deflection", "--calibration", path)
     assert record["verdict"]["calibrated"]["squirt"] == pytest.approx(found.squirt, rel=1e-9)
     assert stdout_of("report", "low deflection", "--calibration", path, "-o", page)
-    assert page.read_text("utf-8").count("calibrated on Predator Z") >= 1
-    assert json.dumps(record)
+    assert "calibrated on Predator Z" in page.read_text("utf-8")
 
 
 @pytest.mark.heavy
@@ -162,12 +159,3 @@ def test_one_factor_scales_every_squirt_of_every_answer() -> None:
     assert pairs[1].cues["new"]["pivot_length"] == pytest.approx(pivot, rel=1e-9)
     lumped = replace(NEW, cue=cf.LumpedCue(NEW.axial_mass, numbers[1].squirt_end_mass), effects=())
     assert float(cf.impulse(lumped).squirt) == pytest.approx(found.squirt, rel=1e-4)
-
-
-@pytest.mark.heavy
-def test_contradictions_are_printed_with_the_file_of_a_calibration(tmp_path: Path) -> None:
-    squirt = '[[squirt]]\noffset = 0.3\nleft = "1.0 deg"\nright = "1.2 deg"\nerror = "0.1 deg"\n'
-    folder = measured_folder(tmp_path / "mine", squirt + '[[balance]]\nvalue = "480 mm"\nerror = "2 mm"\n')
-    status, _, err = call("compare", folder, "--estimate", "-o", tmp_path / "c.toml")
-    assert status == 0
-    assert "balance point of the shaft contradicts the drawing: measured 480.0 ± 2.0 mm, computed 452.8" in err

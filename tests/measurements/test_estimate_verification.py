@@ -58,24 +58,6 @@ def test_estimate_exact_data_recovers_the_parameters() -> None:
         assert value.error_ratio < 0.05
 
 
-@pytest.mark.heavy
-def test_estimate_of_contradictory_measurements_ends_early(monkeypatch: pytest.MonkeyPatch) -> None:
-    """When the cost falls no longer: 5 derivatives of all values, not 18."""
-    points = []
-    jacobian = MeasuredCue.jacobian
-
-    def recorded(cue: MeasuredCue, z: np.ndarray) -> np.ndarray:
-        points.append(z)
-        return jacobian(cue, z)
-
-    monkeypatch.setattr(MeasuredCue, "jacobian", recorded)
-    weights = (Weight(value=value, error=5e-4) for value in (0.05, 0.1, 0.2))
-    tones = (Tone(mode=1, value=value, error=0.2) for value in (50.0, 100.0, 200.0))
-    stiffnesses = (Stiffness(value=value, error=7.0) for value in (100.0, 400.0, 1600.0))
-    assert not estimate(measured_cue(*weights, *tones, *stiffnesses)).converged
-    assert 2 <= len(points) <= 9
-
-
 def test_predictions_keep_no_solved_beams() -> None:
     """Eight strikes with added masses leave their tip modes, 0.15 MB; the beams have 8 MB."""
     predictions = Predictions(SCENE)

@@ -18,12 +18,11 @@ from tests.helpers.command_line import call
 from tests.helpers.invalid_input import (
     assert_calls_refused,
     assert_refused,
-    assert_rejects,
     assert_unchanged,
     rejected,
     stored_rows,
 )
-from tests.helpers.measured_cues import CUE_TOML, MEASURED_TOML, measured_cue, measured_folder
+from tests.helpers.measured_cues import measured_cue, measured_folder
 from tests.helpers.recordings import save_wav
 from tests.measurements.test_calibration import calibration
 
@@ -90,9 +89,3 @@ def test_template_write_failure_leaves_nothing(tmp_path: Path, monkeypatch: pyte
         assert_unchanged(tmp_path, "cannot be written: No space left on device", *template)
     assert call(*template)[0] == 0
     assert_unchanged(tmp_path, "must be a new folder", *template)
-
-
-def test_drawing_of_a_measured_cue_is_no_scene(tmp_path: Path) -> None:
-    scene = f"game = 'kim'\n[cue]\n{CUE_TOML.replace('[[segments]]', '[[cue.segments]]')}"
-    of_scene = measured_folder(tmp_path / "scene", MEASURED_TOML, scene)
-    assert_rejects("this file is the drawing; ball and tip belong in measured.toml", "compare", of_scene)

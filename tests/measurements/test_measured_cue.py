@@ -122,3 +122,16 @@ def test_folder_may_name_its_drawing(tmp_path: Path) -> None:
     folder = measured_folder(tmp_path / "cue", 'cue = "shaft.csv"\n')
     (folder / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12.75\n700,21\n", encoding="utf-8")
     assert load_measured(folder)[0].scene.shaft.length == pytest.approx(0.7)
+
+
+def test_load_measured_without_scene_has_default_stroke_of_game(tmp_path: Path) -> None:
+    """The default stroke is that of every command, for the game of measured.toml."""
+    folder = measured_folder(tmp_path / "cue")
+    drawing = cf.load(folder / "cue.toml")
+    assert isinstance(drawing, cf.Cue)
+    for game in ("", "snooker"):
+        (folder / "measured.toml").write_text(f'game = "{game}"\n' if game else "# none\n", encoding="utf-8")
+        assert load_measured(folder)[0].scene == cf.usual_scene(drawing, game or "pool")
+    (folder / "measured.toml").write_text('game = "pool"\n[tip]\nfriction = 0.5\n', encoding="utf-8")
+    usual = cf.usual_scene(drawing)
+    assert load_measured(folder)[0].scene == replace(usual, tip=replace(usual.tip, friction=0.5))
