@@ -10,7 +10,7 @@ import numpy as np
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.kernel.declarations import KernelInput
 from cuefem.contact.modal_response import ModalPropagator
-from cuefem.contact.ports import Ports, ports_of
+from cuefem.contact.ports import LevelPorts, Ports, ports_of
 from cuefem.contact.tips import contact_time_of, default_steps, tip_fields, tip_of
 from cuefem.cue import Array
 from cuefem.effects.force_law import LeatherLaw, TipLaw
@@ -18,6 +18,7 @@ from cuefem.scene import Scene
 from cuefem.scene.solved_scene import RESOLVED_RESTITUTION
 
 INFINITE_FRICTION = 1e6  # stands for infinite friction: at 1e12 the forces of a last touch drown in round-off
+BOUNCE_SPEED = 0.01  # of the ball along the normal, over the approach speed: a tip that leaves a slower one bounces
 MAX_CONTACT_TIMES = 200  # longest contact, in head-on contact times; beyond it the strike raises an error
 
 
@@ -79,6 +80,15 @@ class ContactModel:
         return bool(B[1, 1] + self.friction * B[0, 1] < 0)
 
     @property
+    def bounce_speed(self) -> float:
+        """Speed of the ball along n, m/s: a separation that leaves a slower one is a bounce, by friction.
+
+        None is slow enough at the centre of the ball, or on a table, which may stop it.
+        """
+        may_bounce = self.phi > 0 and isinstance(self.ports, LevelPorts)
+        return BOUNCE_SPEED * abs(float(self.approach[1])) if may_bounce else -math.inf
+
+    @property
     def never_slips(self) -> bool:
         """Whether friction is infinite."""
         return self.friction >= INFINITE_FRICTION
@@ -121,6 +131,8 @@ class ContactModel:
             unloading_step=step * min(1.0, self.restitution / RESOLVED_RESTITUTION),
             max_time=MAX_CONTACT_TIMES * self.time,
             window=self.window or 0.0,
+            bounce_speed=self.bounce_speed,
+            bounce_window=self.time,
         )
 
 

@@ -33,6 +33,7 @@ FRICTION_STATES = {
 }
 NORMAL_PHASES = {CONSTANTS["LOADING"]: "load", CONSTANTS["UNLOADING"]: "unload", CONSTANTS["FREE"]: "free"}
 STEPS_PER_CALL = 2048  # of the kernel
+BOUNCE_RESIDUAL = 1e-3  # of energy, over the initial one: beyond it a tip bounces faster than the steps
 MAX_RECORDED_STEPS = 2_000_000  # 0.4 GB of records
 
 
@@ -77,6 +78,13 @@ class SolvedContact:
         return float(self.steps["time"][-1])
 
     @property
+    def bounces(self) -> bool:
+        """Whether the first separation is a bounce, which has hardly moved the ball."""
+        flight = np.append(self.steps["friction_state"] == CONSTANTS["SEPARATED"], True)
+        normal_velocity = self.steps["ball"][flight.argmax() - 1, CONSTANTS["N"]]
+        return bool(normal_velocity < self.model.bounce_speed)
+
+    @property
     def impulse(self) -> tuple[float, float]:
         """Final momentum (t, n) of the ball, N s: the impulse on a ball initially at rest."""
         p_t, p_n = self.model.momentum(self.ball).tolist()
@@ -87,6 +95,13 @@ class SolvedContact:
         """Velocity of the ball relative to the tip (t, n) at separation, m/s."""
         v_t, v_n = self.steps["v"][-1, :2].tolist()
         return v_t, v_n
+
+    @property
+    def gap_velocity(self) -> float:
+        """Velocity along n of the ball relative to the cue's rigid-body motion after the contact, m/s."""
+        cue, rigid = self.model.propagator, self.model.propagator.tip.omega == 0
+        ports = cue.ports[:, rigid] @ self.state[0, rigid]
+        return float(self.model.ports.kinematics[1] @ np.concatenate([ports, self.ball]))
 
     @property
     def cue_energy(self) -> tuple[float, float]:
@@ -155,6 +170,7 @@ class SolvedContact:
                 "ball rotation": model.inertia * M * spin**2 / 2,
             }
         )
+        _check_bounces(self, energy)
         return Outcome(
             squirt=side * math.atan2(s * p_n - c * p_t, s * p_t + c * p_n) + 0.0,
             ball_velocity=np.array([side * p_t, p_n]) / M,
@@ -174,7 +190,8 @@ class SolvedContact:
     def _regime(self, energy: dict[str, float]) -> str:
         if self.time == 0:  # separated by the impact of infinite friction
             return "late stick" if abs(self.velocity[0]) <= 1e-12 * self.model.speed else "miscue"
-        return contact_state(self.phases, energy)
+        in_contact = [phase for phase in self.phases if phase[:2] != SEPARATION]
+        return contact_state(in_contact if self.bounces else self.phases, energy)
 
     def energies(self, ball_energies: dict[str, float]) -> dict[str, float]:
         """Energies after the contact by name, J; ball_energies: initial energy, and those of the ball or striker."""
@@ -258,6 +275,24 @@ def _losses(model: ContactModel, state: KernelState, last: np.void) -> Losses:
         table=sum(state.work[CONSTANTS["UP"] :]),
         damping=last["damping_loss"],
         radiated=last["radiated"],
+    )
+
+
+def _check_bounces(contact: SolvedContact, energy: dict[str, float]) -> None:
+    """RuntimeError for a tip that bounces without an end, or faster than the steps; energy: of the outcome, J."""
+    if not contact.bounces:
+        return
+    model, speed = contact.model, -contact.gap_velocity
+    residual = abs(sum(energy.values()) / energy["initial"] - 2)
+    if model.window is None and speed > 0:
+        reason = f"the cue still moves towards the ball at {speed:.3g} m/s"
+    elif residual > BOUNCE_RESIDUAL:
+        reason = "the bounces are too fast for the steps"
+    else:
+        return
+    raise RuntimeError(
+        f"friction turns the tip away from the ball again and again: after {contact.time:.3g} s {reason}; take more "
+        f"steps, or lower Tip.friction, {model.friction:g}, or the offset"
     )
 
 

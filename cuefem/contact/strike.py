@@ -44,7 +44,8 @@ def strike(scene: Scene, at: Resolution | Solid | None = None, *, rtol: float | 
         For effects that cannot act together, or a restitution below 0.05 (0.1 beside `LeatherTip`); `cuefem.impulse`
         takes any. If rtol is out of bounds, or beside ``at``.
     RuntimeError
-        If the ball does not separate from the cue, or the finest level of refinement does not reach ``rtol``.
+        If the ball does not separate from the cue, or friction turns the tip away from it again and again, or the
+        finest level of refinement does not reach ``rtol``.
 
     Notes
     -----

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from math import inf, nan
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -23,6 +24,8 @@ PLANAR = cf.Scene(cf.LumpedCue(0.54, 0.004), BALL, cf.Tip(0.75, 0.7), cf.Stroke(
 RAISED = replace(PLANAR, effects=(cf.Elevation(0.1),))
 HAMMER = cf.Striker(0.005, 0.8, contact_time=1e-3)
 LUMPED = cf.Scene(cf.LumpedCue(0.54, 0.006, 3.0), stroke=cf.Stroke(offset=0.3))
+CARBON = cf.load(Path(__file__).parents[2] / "meshes" / "carbon.toml")
+BOUNCING = cf.Scene(CARBON, tip=cf.Tip(0.85, inf, contact_time=1e-3), stroke=cf.Stroke(2.0, 0.82))
 OFF_CENTRE = cf.Scene(cf.LumpedCue(0.54, 0.003), stroke=cf.Stroke(offset=0.3))
 
 
@@ -75,6 +78,9 @@ CALLS: dict[str, Callable[[], object]] = {
     "few steps": lambda: cf.Resolution(1, 1, 1, 19),
     "more modes than elements give": strike_call(kim_scene(), cf.Resolution(2, 3, 500)),
     "history before contact": lambda: cf.strike(kim_scene(), cf.Resolution(2, 8, 4)).history(-1e-9),
+    "bounces without an end": limited(
+        "step_records.BOUNCE_RESIDUAL", 0.0, strike_call(BOUNCING, effects=(cf.TipDome(0.0095),))
+    ),
     "no separation": limited("contact_model.MAX_CONTACT_TIMES", 0.3, strike_call(OFF_CENTRE)),
     "too many steps": limited("step_records.MAX_RECORDED_STEPS", 3000, wait_for_second_hit),
     "force without a number": strike_with_nan,

@@ -112,6 +112,18 @@ def test_clamp_behind_the_tip_is_nearly_one_at_the_tip(position: float) -> None:
     assert squirts[1] == pytest.approx(squirts[0], rel=1e-3)
 
 
+@pytest.mark.parametrize("friction", [100.0, math.inf])
+@pytest.mark.parametrize("steps", [200, 800, 6400])
+def test_tip_that_strong_friction_turns_away_hits_again(friction: float, steps: int) -> None:
+    """The front of the cue bounces off a ball that it has hardly moved, and the cue follows: 0.0815 at friction 5."""
+    tip, stroke = cf.Tip(0.85, friction, contact_time=1e-3), cf.Stroke(2.0, 0.82)
+    scene = cf.Scene(CARBON, cf.Ball(0.17, 0.028575), tip, stroke, (cf.TipDome(0.0095),))
+    outcome = strike_modes(scene, tip_modes_of(scene), steps=steps)
+    assert outcome.squirt == pytest.approx(0.0808, rel=1e-2)
+    assert outcome.regime in ("stick", "late stick")
+    assert energy_residual(outcome) < 1e-4
+
+
 THRUST = (cf.TipDome(0.0095), cf.AxialWaves(), cf.GeometricStiffness())
 HARD = {  # squirt of small steps: of 400 modes and 12,800 steps, and of 6,400 steps
     "low restitution": (POOL, cf.Tip(0.2348983, 0.8133191, contact_time=7.0436e-4), -0.3755904, (), None, -0.0214451),

@@ -111,6 +111,8 @@ typedef struct {
     double arm_t, arm_n;         /* moment arms of (t, n) about the end section at the first touch, m */
     double step, unloading_step; /* length of a step; of one while the tip unloads, s */
     double max_time, window;     /* longest contact; time followed after the first separation, s */
+    double bounce_speed;         /* a ball that is slower along n, m/s, has been left by a bounce */
+    double bounce_window;        /* time followed after a bounce, s */
 } Input;
 
 /* What one step leaves to the next. Python fills the first four; the rest begins as zero. */

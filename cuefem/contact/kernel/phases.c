@@ -62,7 +62,6 @@ static void after_unloading(const Input *in, State *s, const Work *w)
 {
     if (s->ends_at_event || !is_indented(in, s)) {
         separate(in, s, w);
-        enter(in, s, FREE);
     } else if (s->indentation > s->max_indentation) {
         enter(in, s, LOADING);
     }
@@ -87,6 +86,13 @@ void next_phase(const Input *in, State *s, const Work *w)
         after_flight(in, s);
 }
 
+/* Time followed after the first separation, s. A tip that bounces has hardly moved the ball, and hits it again. */
+static double window(const Input *in, const State *s)
+{
+    bool bounces = s->ball[N] < in->bounce_speed;
+    return bounces ? larger(in->window, in->bounce_window) : in->window;
+}
+
 /* Separation: the tip forgets its strain, and the modes are kept for Python. */
 void separate(const Input *in, State *s, const Work *w)
 {
@@ -101,5 +107,6 @@ void separate(const Input *in, State *s, const Work *w)
     memset(s->last_F, 0, sizeof s->last_F);
     memset(s->former_F, 0, sizeof s->former_F);
     memcpy(s->separated_modes, s->modes, 2 * in->modes * sizeof(double));
-    if (!isfinite(s->window_end)) s->window_end = s->time + in->window;
+    if (!isfinite(s->window_end)) s->window_end = s->time + window(in, s);
+    enter(in, s, FREE);
 }

@@ -77,9 +77,7 @@ static void begin_with_impact(const Input *in, const StepTables *t, State *s, Wo
     bool stays = take_impact(in, t, s, w, row);
     s->steps++;
     s->next_step = in->step;
-    if (stays || s->status != RUNNING) return;
-    separate(in, s, w);
-    s->status = ENDED;
+    if (!stays) separate(in, s, w);
 }
 
 /* Whether a step was taken. */
