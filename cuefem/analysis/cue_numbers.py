@@ -32,7 +32,7 @@ class CueNumbers(Rows, Analysis):
 
     def values(self) -> Record:
         """The results by name."""
-        return self.numbers
+        return {**self.numbers}
 
     def frame_rows(self) -> list[Record]:
         """A row for each quantity."""

@@ -35,7 +35,7 @@ def wave_phase(cue: Cue, omega: ArrayLike) -> Array:
     omega, sections = np.asarray(omega, float)[..., None, None], segment_sections(cue)
     _, EI, kGA, rhoA, rhoI = (values[:, 1:4] for values in sections)
     shear, rotary = rhoA / kGA, rhoI / EI
-    root = np.sqrt((shear - rotary) ** 2 + 4 * rhoA / (EI * np.maximum(omega, 1e-9) ** 2))
+    root = np.hypot(shear - rotary, 2 * np.sqrt(rhoA / EI) / np.maximum(omega, 1e-9))
     branches = np.array([shear + rotary + root, np.maximum(shear + rotary - root, 0)])
     phase = omega * np.sqrt(branches / 2) @ (np.array([5, 8, 5]) / 18) * cue.lengths
     return np.moveaxis(phase, -1, 1)

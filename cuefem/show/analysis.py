@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+import numpy as np
 
 from cuefem.files import InputError, save_page, write_atomically
 from cuefem.files.defaults_report import Assumption, held_assumptions, offered_assumptions
@@ -25,6 +28,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+CHANGEABLE = (dict, list, np.ndarray)
 MAX_SHOWN, MAX_REPR = 12, 320  # of `__repr__`: entries of a container, characters
 DESIGN_STYLES = ("c1", "c2", "c3", "c4", "c5")  # CSS classes of designs side by side
 
@@ -112,8 +116,9 @@ class Answer:
         return []
 
     def values(self) -> Record:
-        """The numbers alone, in SI units: the answer's own objects; `to_dict` has plain copies."""
-        return {each.name: getattr(self, each.name) for each in fields(self) if each.repr}
+        """The numbers alone, in SI units; a caller may change its arrays, lists and dicts. `to_dict` has plain ones."""
+        named = {each.name: getattr(self, each.name) for each in fields(self) if each.repr}
+        return {name: deepcopy(value) if isinstance(value, CHANGEABLE) else value for name, value in named.items()}
 
     def said(self) -> Record:
         """Assumptions and warnings as texts."""

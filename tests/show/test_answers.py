@@ -51,7 +51,10 @@ def test_answer_has_short_repr_strict_json_and_frame(name: str) -> None:
     assert 60 <= len(text) <= 350
     assert len(text.splitlines()) == 1
     record = json.loads(json.dumps(answer.to_dict(), allow_nan=False))
-    assert record.keys() == answer.to_dict().keys()
+    for value in answer.values().values():
+        if isinstance(value, dict | list):
+            value.clear()
+    assert json.loads(json.dumps(answer.to_dict(), allow_nan=False)) == record
     if not isinstance(answer, Rows | SweepResult):
         assert name in ("verdict", "report")
         return
