@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ctypes
 import logging
+import platform
 import warnings
 from collections.abc import Callable
 from importlib.resources import files
@@ -26,6 +28,7 @@ from cuefem.quantity.unit_checks import PlausibilityWarning
 HOST = "127.0.0.1"
 FORM_SIZE = 10_000  # bytes of a form beside its file
 ENDINGS = f"{', '.join(DRAWING_EXTENSIONS[:-1])} or {DRAWING_EXTENSIONS[-1]}"
+M_ARENA_MAX = -8  # of glibc's mallopt
 REJECTED = f"a file must be a {ENDINGS} of at most {MAX_FILE // 10**6} MB"
 
 
@@ -44,6 +47,7 @@ def serve(
     the browser keeps, those of its last switch.
     """
     warnings.filterwarnings("ignore", category=PlausibilityWarning)  # the page's Check lists these warnings
+    _share_one_heap()
 
     logging.getLogger("uvicorn.error").addFilter(_is_of_open_page)
 
@@ -74,6 +78,12 @@ def serve(
         tailwind=False,
         show_welcome_message=False,
     )
+
+
+def _share_one_heap() -> None:
+    """Let all threads allocate from one heap: glibc gives each its own, which keep what is free in them."""
+    if "glibc" in platform.libc_ver():
+        ctypes.CDLL(None).mallopt(M_ARENA_MAX, 1)
 
 
 def _is_of_open_page(record: logging.LogRecord) -> bool:
