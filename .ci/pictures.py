@@ -1,6 +1,6 @@
 """README's pictures: the figure of the chain by its study, and the report page of pool_hollow as chromium shows it.
 
-.venv/bin/python .ci/pictures.py
+Stored where they belong, or in another folder: .venv/bin/python .ci/pictures.py [FOLDER]
 """
 
 from __future__ import annotations
@@ -33,6 +33,9 @@ def draw_report(cue: Path, picture: Path) -> None:
 
 
 if __name__ == "__main__":
+    others = [Path(name) for name in sys.argv[1:2]]
+    (near_study,) = others or [chain.STUDY.path.parent]
+    (near_studies,) = others or [STUDIES]
     for name, figure in chain.STUDY.figures.items():
-        figure.save(chain.STUDY.path.with_name(name))
-    draw_report(STUDIES.parent / "meshes" / "pool_hollow.toml", STUDIES / "report.png")
+        figure.save(near_study / name)
+    draw_report(STUDIES.parent / "meshes" / "pool_hollow.toml", near_studies / "report.png")
