@@ -1,6 +1,5 @@
 """Invalid input of end masses: calls, whose messages are stored; squirts without an end mass (bad input)."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from math import inf
 
@@ -10,21 +9,15 @@ import cuefem as cf
 from cuefem.endmass.definitions import equivalent_end_mass
 from cuefem.endmass.end_mass_density import end_mass_density
 from tests.helpers.cues import kim, scene
-from tests.helpers.invalid_input import assert_refused, messages_of
+from tests.helpers.invalid_input import assert_calls_refused
 
 SCENE = scene(kim(), 1e-3)
 LOADED = replace(SCENE, effects=(cf.PointMass(position=0.1, mass=1e-3),))
 CLAMPED = replace(scene(kim(), 2e-3), effects=(cf.Support(0.01, inf, inf),))
-CALLS: dict[str, Callable[[], object]] = {
-    "drive of a push": lambda: cf.end_mass(SCENE, "push"),
-    "density of a lumped cue": lambda: end_mass_density(replace(SCENE, cue=cf.LumpedCue(0.54, 0.01))),
-    "density with an effect": lambda: end_mass_density(LOADED),
-    "tip that moves back": lambda: cf.end_mass(CLAMPED, "force"),
-}
 
 
 def test_end_mass_invalid_input_raises(request: pytest.FixtureRequest) -> None:
-    assert_refused("endmass", messages_of(CALLS), request)
+    assert_calls_refused("endmass", globals() | {"end_mass_density": end_mass_density}, request)
 
 
 @pytest.mark.parametrize("mass", [1e-4, 1e-3, 0.01, 0.05])
