@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -16,6 +17,9 @@ import pytest
 
 import cuefem as cf
 from cuefem.endmass.definitions import DEFINITIONS
+from cuefem.files.cue_names import CUES
+from cuefem.files.reference_cues import named_scene
+from cuefem.parameters.table import PARAMETERS
 from cuefem.solid import tip_compliance as tc
 from cuefem.solid.tip_table import UntabulatedTip
 from tests.contact.test_independent_effects import KINDS, RandomScene
@@ -47,7 +51,8 @@ def beams() -> dict[str, float]:
 def end_masses() -> dict[str, float]:
     """By every definition: of few modes, of the default ones, and refined."""
     bent = replace(kim_scene(), effects=(cf.AxialWaves(), cf.GeometricStiffness()))
-    of_every_drive = [*((kim_scene(), drive) for drive in DEFINITIONS), (bent, "stick")]
+    lossy = replace(kim_scene(), effects=(cf.StructuralDamping(0.2),))
+    of_every_drive = [*((kim_scene(), drive) for drive in DEFINITIONS), (bent, "stick"), (lossy, "force")]
     of_beams = [(scene, drive) for scene in effect_scenes()[2:5] for drive in ("stick", "velocity", "force")]
     total = {
         f"{number}, {drive}": cf.end_mass(scene, drive, KIM_AT)
@@ -105,7 +110,7 @@ def lumped_cues() -> dict[str, float]:
 
 def leather_tips() -> dict[str, float]:
     """Contacts of a patch on the dome and across its rim, and a small table of a tip with a layer."""
-    fineness = tc.graded_fineness(2, 2, 2, 9)
+    fineness = tc.graded_fineness(2, 2, 2, 20)
     shape = tc.Shape(0.6, 1.3, ((0.1, 3.0, 0.3),))
     surfaces = tc.surface_compliances(tc.TipSolid(shape, fineness), 0.4)
     total = {}
@@ -124,6 +129,37 @@ def leather_tips() -> dict[str, float]:
     return total
 
 
+def changed_scenes() -> dict[str, float]:
+    """Sections of reference cues, and of one with all kinds of parts, after a change of each parameter of a cue."""
+    wood, plastic, foam = map(cf.material, ("hard maple", "melamine", "foam"))
+    parts = (
+        cf.Segment(0.004, 0.0126, 0.0127, plastic, 0.008, 0.008, core=wood),
+        cf.Segment(0.016, 0.0127, 0.0128, plastic, 0.008, 0.008, core=foam),
+        cf.Segment(0.3, 0.0128, 0.0145, wood, 0.008, 0.006),
+        cf.Segment(0.42, 0.0145, 0.0215, wood),
+    )
+    scenes = [cf.usual_scene(cf.Cue(parts, 0.43)), *map(named_scene, CUES)]
+    total = Counter[str]()
+    for key, known in PARAMETERS.items():
+        for number, scene in enumerate(scenes, 1):
+            value = "ash" if known.materials else known.value(scene)
+            for changed in (value,) if isinstance(value, str) else (value * 0.98, value * 1.01) if value else ():
+                try:
+                    cue = cf.with_parameters(scene, {known.name: changed}).shaft
+                except ValueError:
+                    total[f"{key}, refused"] += number
+                    continue
+                if cue != scene.shaft:
+                    total[key] += number * (sections_sum(cue) - sections_sum(scene.shaft))
+    return total
+
+
+def sections_sum(cue: cf.Cue) -> float:
+    """A number that every size and material of a cue changes."""
+    sections = np.log(cue.section(cue.length * np.linspace(0.001, 0.999, 30)))
+    return float(np.arange(1, 31) @ sections.sum(axis=0) + cue.mass)
+
+
 def solids() -> dict[str, float]:
     """A stub of two pieces, bored and capped, and its parts."""
     wood = cf.Material(E=12.6e9, G=1.1e9, rho=700.0, nu=0.45, transverse_ratio=0.0985, nu_transverse=0.52)
@@ -138,7 +174,8 @@ def solids() -> dict[str, float]:
 
 
 @pytest.mark.parametrize(
-    "numbers", [beams, end_masses, refined_strikes, side_strikes, lumped_cues, leather_tips, solids]
+    "numbers",
+    [beams, end_masses, refined_strikes, side_strikes, lumped_cues, leather_tips, changed_scenes, solids],
 )
 def test_numbers_equal_golden_file(numbers: Callable[[], dict[str, float]], request: pytest.FixtureRequest) -> None:
     now = {name: float(value) for name, value in numbers().items()}

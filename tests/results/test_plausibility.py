@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.cue.materials import MATERIALS
 from cuefem.files.defaults_report import held_assumptions
 from cuefem.results.plausibility import plausibility_warnings
 from tests.helpers.command_line import call
@@ -39,6 +40,10 @@ def piece(length: float, diameter: float = 0.01275, made: cf.Material = WOOD, bo
     return cf.Segment(length, diameter, diameter, made, bore, bore)
 
 
+def weighed(density: float) -> cf.Segment:
+    return piece(0.7, made=replace(WOOD, rho=density))
+
+
 def ferruled(length: float) -> tuple[cf.Segment, ...]:
     return replace(piece(length, made=PLASTIC, bore=0.008), core=WOOD), CONE
 
@@ -52,6 +57,8 @@ LIMITS = {  # of what is warned, where, and a drawing with such a value
     "diameter jumps": (1.5, lambda x: (CONE, piece(0.3, 0.0215 * x))),
     # a bumper behind the butt with this share of the volume is no jump
     "jumps from": (0.01, lambda x: (CONE, piece(0.7, 0.03), piece(2.41 * x, 0.03 / 1.6))),
+    "mass is too large": (1.1 * MATERIALS["hard maple"].ranges["rho"][1], lambda x: (weighed(x),)),
+    "mass is too small": (0.9 * MATERIALS["hard maple"].ranges["rho"][0], lambda x: (weighed(x),)),
     "solid rod": (0.3, lambda x: (piece(x, made=FIBRE), CONE)),
     "as stiff as carbon": (3e10, lambda x: (piece(0.4, made=replace(FIBRE, E=x)), CONE)),
     "carbon shafts are tubes": (2500.0, lambda x: (piece(0.4, made=replace(FIBRE, rho=x)), CONE)),
@@ -62,8 +69,8 @@ LIMITS = {  # of what is warned, where, and a drawing with such a value
 @pytest.mark.parametrize("words", LIMITS)
 def test_value_beyond_its_limit_alone_is_warned_of(words: str) -> None:
     limit, drawn = LIMITS[words]
-    scenes = (cf.Scene(cf.Cue(drawn(limit * factor), 0.43)) for factor in (0.97, 1.03))
-    below, above = (any(words in line for line in plausibility_warnings(scene)) for scene in scenes)
+    cues = (cf.Cue(drawn(limit * factor), 0.43, shaft_mass_measured=True) for factor in (0.97, 1.03))
+    below, above = (any(words in line for line in plausibility_warnings(cf.Scene(cue))) for cue in cues)
     assert below != above
 
 
