@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 import cuefem as cf
 from cuefem.contact.strike import strike_modes
 from cuefem.effects.effect import Effect
+from cuefem.scene.solved_scene import tip_modes_of
 from tests.helpers.examples import examples
 from tests.helpers.leather_scenes import LEATHER, leather_scene
 from tests.helpers.orders import assert_order
@@ -39,7 +40,6 @@ pytestmark = pytest.mark.kernel
 AT = cf.Resolution(2, 10, 8)
 # Bound on the energy residual of a cue with dampers at the default steps; its order: test_step_convergence.py
 ENERGY_TOLERANCE = 1e-4
-POSITION = 0.213  # m
 POSITIONS = st.floats(0.01, 0.69)
 
 
@@ -167,34 +167,9 @@ def test_effect_split_in_parts_equals_whole(name: str) -> None:
     assert expected.dome_radius == pytest.approx(result.dome_radius, abs=1e-15)
 
 
-NODE = cf.PointMass(
-    position=POSITION, mass=0.0
-)  # a node alone: the mesh's error is the same with and without the effect
-VANISHING = {
-    "point mass": (lambda x: cf.PointMass(position=POSITION, mass=1e-4 * x), NODE),
-    "rotary inertia": (lambda x: cf.PointMass(position=POSITION, mass=0.0, rotary_inertia=1e-7 * x), NODE),
-    "support": (lambda x: cf.Support(POSITION, 1e3 * x), NODE),
-    "rotational support": (lambda x: cf.Support(POSITION, 0.0, x), NODE),
-    "dashpot": (lambda x: cf.Support(POSITION, dashpot=0.1 * x), NODE),
-    "damping": (lambda x: cf.StructuralDamping(0.01 * x), None),
-    "rotational joint": (lambda x: cf.Joint(POSITION, rotational_compliance=1e-5 * x), NODE),
-    "shear joint": (lambda x: cf.Joint(POSITION, shear_compliance=1e-8 * x), NODE),
-    "dome": (lambda x: cf.TipDome(1e-3 * x), None),
-}
-
-
-def squirt(*effects: Effect, at: cf.Resolution = KIM_AT, **stroke: float) -> float:
+def squirt(*effects: Effect, **stroke: float) -> float:
     scene = replace(kim_scene(), effects=effects)
-    return float(cf.strike(replace(scene, stroke=replace(scene.stroke, **stroke)), at).squirt)
-
-
-@pytest.mark.parametrize("name", VANISHING)
-def test_effect_near_limit_vanishes_linearly(name: str) -> None:
-    make, limit = VANISHING[name]
-    bare = squirt(limit, at=AT) if limit else squirt(at=AT)
-    steps = [1.0, 1e-1, 1e-2]
-    assert_order(1.0, steps, [abs(squirt(make(x), at=AT) - bare) for x in steps], within=[0.04, 0.01])
-    assert abs(squirt(make(0.0), at=AT) / bare - 1) < 1e-14
+    return float(cf.strike(replace(scene, stroke=replace(scene.stroke, **stroke)), KIM_AT).squirt)
 
 
 def test_strike_other_limits_are_reached() -> None:
@@ -217,27 +192,20 @@ def test_strike_other_limits_are_reached() -> None:
     assert_order(1, 2.0 ** -np.arange(4.0), changes, within=[0.04, 0.02, 0.01])
 
 
-LOUD = cf.Scene(cf.LumpedCue(0.54, 0.01), tip=cf.Tip(0.3, 0.05, contact_time=3e-3), stroke=cf.Stroke(1.5, 0.5))
+SHAFT = tip_modes_of(kim_scene(), KIM_AT)
+LOUD = custom_tip_modes([870.0, 2600.0], [11.0, 12.0], rigid=0.5)
 CASES = {
-    "stick": kim_scene(0.3),
-    "miscue": kim_scene(0.8),
-    "reload": kim_scene(0.9, restitution=0.05, friction=0.3, contact_time=3e-3),
-    "infinite friction": kim_scene(-0.5, friction=inf),
-    "lumped": cf.Scene(cf.LumpedCue(0.54, 0.004), stroke=cf.Stroke(offset=0.4)),
-    "slips and sticks eight times": LOUD,
+    "stick": (kim_scene(0.3), SHAFT),
+    "reload": (kim_scene(0.9, restitution=0.05, friction=0.3, contact_time=3e-3), SHAFT),
+    "infinite friction": (kim_scene(-0.5, friction=inf), SHAFT),
+    "slips and sticks eight times": (kim_scene(0.5, restitution=0.3, friction=0.05, contact_time=3e-3), LOUD),
 }
-
-
-def outcome_of(name: str) -> cf.Outcome:
-    scene = CASES[name]
-    if scene is LOUD:
-        return strike_modes(scene, custom_tip_modes([870.0, 2600.0], [11.0, 12.0], rigid=0.5))
-    return cf.strike(scene, None if isinstance(scene.cue, cf.LumpedCue) else KIM_AT)
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_history_forces_obey_friction_and_integrate_to_impulse(name: str) -> None:
-    scene, outcome = CASES[name], outcome_of(name)
+    scene, tip = CASES[name]
+    outcome = strike_modes(scene, tip)
     history, side, mu = outcome.history, np.sign(scene.stroke.offset), scene.tip.friction
     force_times, force, lengths = history.force_times[1:-1], history.forces[1:-1], np.diff(history.ends)
     assert np.all(force[:, 1] >= 0)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cuefem import Cue, Material, PointMass, Resolution, Scene, Tip, load
+from cuefem import Cue, Material, Resolution, Scene, Tip, load
 from cuefem.endmass.definitions import end_mass
 from cuefem.endmass.end_mass_density import EndMassDensity, end_mass_density
 from studies.strokes import cue as reference_cue
@@ -54,21 +54,6 @@ def slope(function: Callable[[float], float], step: float) -> float:
 
 
 CUES = pytest.mark.parametrize("cue", [low_deflection(), reference_cue("carbon")], ids=["bored", "tube"])
-
-
-@pytest.mark.heavy
-@CUES
-def test_end_mass_density_to_point_mass_equals_difference(cue: Cue) -> None:
-    """The density of rhoA is the end mass that a point mass there adds."""
-    fine = Resolution(4, 20, 14)  # so fine that the node of the point mass has no effect
-    result = end_mass_density(scene(cue), fine)
-    i = len(result.x) // 3
-    mass = 1e-5  # kg: at 1 mg round-off is 1e-6, here 1e-7
-    scenes = (replace(scene(cue), effects=(PointMass(position=result.x[i], mass=count * mass),)) for count in (1, 2, 3))
-    first, second, third = (end_mass(each, "stick", fine) for each in scenes)
-    bare = end_mass(scene(cue), "stick", fine)
-    measured = (18 * first - 9 * second + 2 * third - 11 * bare) / (6 * mass)
-    assert measured == pytest.approx(result.rhoA[i] + result.axial_mass, rel=1e-6)
 
 
 def multiplied(cue: Cue, constant: str, factor: float) -> Cue:

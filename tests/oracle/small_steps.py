@@ -76,10 +76,7 @@ class Steps:
             assert cue.coupling == 0
             deflection = np.array([cue.end_mass**-0.5])
             return Bending(np.zeros(1), deflection, np.zeros(1), np.zeros((1, 1)))
-        on_cue = tuple(
-            e for e in self.scene.effects if isinstance(e, (cf.Support, cf.Joint, cf.StructuralDamping, cf.PointMass))
-        )
-        return bending(cue, on_cue, modes + 2)
+        return bending(cue, self.scene.cue_effects, modes + 2)
 
     def _frame(self) -> None:
         """Output rows of the relative velocity, ball less tip, along each direction of the contact and of the table."""
@@ -179,8 +176,6 @@ class Steps:
 
     def _damping_power(self, z: Array) -> float:
         """Energy that dampers dissipate in a step, J."""
-        if not self.beam.damping.any():
-            return 0.0
         v = z[self.size + 1 : self.size + 1 + self.n_modes]
         return float(v @ self.beam.damping @ v) * self.step
 
