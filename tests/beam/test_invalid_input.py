@@ -2,10 +2,9 @@
 
 import pytest
 
-import cuefem as cf
 from tests.helpers.cues import kim, rod
 from tests.helpers.invalid_input import assert_calls_refused
 
 
 def test_modes_invalid_input_raises(request: pytest.FixtureRequest) -> None:
-    assert_calls_refused("beam", vars(cf) | {"kim": kim, "rod": rod}, request)
+    assert_calls_refused("beam", {"kim": kim, "rod": rod}, request)

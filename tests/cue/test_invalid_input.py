@@ -13,4 +13,4 @@ NAMES = {"PIECE": cf.Segment(0.7, 0.012, 0.021, MAPLE), "MAPLE": MAPLE, "replace
 
 
 def test_cue_invalid_input_raises(request: pytest.FixtureRequest) -> None:
-    assert_calls_refused("cue", vars(cf) | NAMES, request)
+    assert_calls_refused("cue", NAMES, request)

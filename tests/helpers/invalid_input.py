@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+import cuefem
 from tests.helpers.command_line import call
 from tests.test_golden_files import GOLDEN, assert_golden
 
@@ -34,7 +35,8 @@ def messages_of(calls: Mapping[str, Callable[[], object]]) -> dict[str, str]:
 
 
 def assert_calls_refused(table: str, names: dict[str, Any], request: pytest.FixtureRequest) -> None:
-    """As `assert_refused`, of a table whose rows are calls in Python, with the names of a test file."""
+    """As `assert_refused`, of a table whose rows are calls in Python, with the package's names and a test file's."""
+    names = {name: getattr(cuefem, name) for name in cuefem.__all__} | names
     assert_refused(table, {row: raised(lambda row=row: eval(row, names)) for row in stored_rows(table)}, request)
 
 
