@@ -142,12 +142,11 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
     ValueError for effects that cannot act together, and for a restitution below its bound.
     """
     offset, ball, window = scene.stroke.offset, scene.ball, scene.contact_terms.window
-    ports, contact_tip = ports_of(scene), tip_of(scene)
-    _check_window(contact_tip, friction=scene.tip.friction, window=window)
+    ports = ports_of(scene)
     return ContactModel(
         propagator=ports.propagator(tip if offset else tip.uncoupled),
         ports=ports,
-        tip=contact_tip,
+        tip=tip_of(scene),
         ball=np.zeros_like(ports.inverse_masses(ball.mass, ball.inertia)),
         ball_mass=ball.mass,
         inertia=ball.inertia,
@@ -161,12 +160,3 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
         side=math.copysign(1.0, offset),
         radius=ball.radius,
     )
-
-
-def _check_window(tip: TipLaw | LeatherLaw, *, friction: float, window: float | None) -> None:
-    """ValueError for a second hit of a rigid patch with infinite friction."""
-    if tip.is_rigid and window is not None and math.isinf(friction):
-        raise ValueError(
-            "Tip.friction must be finite beside SecondHit, unless the tip has tangential compliance (TipShear, "
-            "LeatherTip): impacts of infinite friction separate ball and tip again and again; got inf"
-        )

@@ -30,7 +30,7 @@ class SecondHit(Effect):
 
     Wrong when: The leather recovers its shape between the hits, or the player's hand accelerates or holds the cue.
     Gravity and the table are neglected, and the direction of the contact is that of the first touch unless
-    `RollingContact` turns it. Infinite friction requires a tip with tangential compliance.
+    `RollingContact` turns it.
 
     Limit: The effect vanishes as the window goes to zero; it changes nothing if the tip does not reach the ball again.
 
