@@ -32,6 +32,16 @@ FILES: dict[str, tuple[str, bool, Callable[[bytes], bytes]]] = {
     "ply": ("ply", False, lambda text: text),
     "binary ply": ("ply", True, lambda text: text),
     "obj": ("obj", False, lambda text: text.replace(b"\n", b"\r\n")),
+    "obj counted from its end": (
+        "obj",
+        False,
+        lambda text: re.sub(
+            rb"^f .*",
+            lambda face: b"f " + b" ".join(b"%d" % (int(i) - 1 - len(SHAFT[0])) for i in face[0].split()[1:]),
+            text,
+            flags=re.MULTILINE,
+        ),
+    ),
     "obj with normals": (
         "obj",
         False,
