@@ -89,7 +89,7 @@ class LeatherLaw:
     compliance_terms: tuple[float, ...]
     restitution: float
     indentation_limit: float
-    surface_restitution: float = 1.0
+    surface_restitution: float
     slips_in_parts: ClassVar[bool] = True
     is_rigid: ClassVar[bool] = False
 

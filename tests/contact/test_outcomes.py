@@ -5,10 +5,8 @@ from __future__ import annotations
 import pickle
 import resource
 import sys
-from concurrent.futures import ProcessPoolExecutor
 from copy import deepcopy
 from dataclasses import fields, replace
-from multiprocessing import get_context
 
 import numpy as np
 import pytest
@@ -80,17 +78,6 @@ def test_results_copy_pickle_and_compare() -> None:
     assert cf.modes(cue, 3) == cf.modes(cue, 3) != cf.modes(cue, 4)
     assert moved != cf.motion(kim_scene(0.31), [0.0, 1e-3], AT)
     assert np.array_equal(pickle.loads(pickle.dumps(cf.modes(cue, 3))).shape(0.1), cf.modes(cue, 3).shape(0.1))
-
-
-def strike_few(scene: cf.Scene) -> cf.Outcome:
-    return cf.strike(scene, AT)
-
-
-@pytest.mark.heavy
-def test_strikes_in_another_process_are_equal() -> None:
-    """Their histories too."""
-    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as executor:
-        assert [*executor.map(strike_few, SCENES)] == [*map(strike_few, SCENES)]
 
 
 @pytest.mark.nightly

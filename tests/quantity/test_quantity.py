@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cuefem.cue import Material, Segment
+from cuefem.quantity.display_units import US
 from cuefem.quantity.fields import OutOfBounds, Quantity
 
 INTERVALS = ["(0, inf)", "[0, inf)", "[0, inf]", "[0, 1]", "(-1, 1)", "(-inf, inf)"]
@@ -31,3 +32,7 @@ def test_dependent_bound_error_has_si_and_file_units() -> None:
     with pytest.raises(OutOfBounds, match=message) as error:
         Segment(0.7, 0.012, 0.021, Material(12.6e9, 0.84e9, 782.0), tip_bore=0.013)
     assert error.value.file_message == "must be at least 0 and less than 12 mm, its outer diameter; got 13 mm"
+
+
+def test_display_unit_of_a_compliance_is_the_reciprocal_of_a_stiffness() -> None:
+    assert US["m/N"].factor * US["N/m"].factor == pytest.approx(1.0, rel=1e-12)
