@@ -84,17 +84,22 @@ def beside(folder: Path) -> list[list[object]]:
 
 
 def shop(folder: Path) -> list[list[object]]:
-    """A folder of three shafts, and a drawing that cannot be read; options that fill in what one of two leaves open."""
+    """A folder of three shafts, and a drawing that cannot be read."""
     shafts = folder / "shop"
     shafts.mkdir()
     for name, values in (("own", {}), ("slim", {"tip diameter": 0.0115}), ("alike", {"tip diameter": 0.01202})):
         cf.save(cf.with_parameters(SPRING, values), shafts / f"{name}.toml")
     (shafts / "broken.csv").write_text("x (in),d (in)\n0,.5\n14,abc\n", encoding="utf-8")
     (shafts / "notes.txt").write_text("no drawing", encoding="utf-8")
+    return [["compare", "shop", "-o", f"list.{kind}"] for kind in ("html", "csv", "json")]
+
+
+def filled(folder: Path) -> list[list[object]]:
+    """Options that fill in what one of two cues leaves open."""
     (folder / "bare.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n", encoding="utf-8")
     (folder / "bare.toml").write_text('cue = "bare.csv"\n[tip]\ncontact_time = "1 ms"\n', encoding="utf-8")
-    filled = ["compare", "bare.toml", "shop/own.toml", "--body-mass", "15 oz", "--ferrule", "1 in melamine"]
-    return [*(["compare", "shop", "-o", f"list.{kind}"] for kind in ("html", "csv", "json")), filled]
+    cf.save(SPRING, folder / "own.toml")
+    return [["compare", "bare.toml", "own.toml", "--body-mass", "15 oz", "--ferrule", "1 in melamine"]]
 
 
 def like(folder: Path) -> list[list[object]]:
@@ -180,6 +185,7 @@ HEAVY = [pytest.param(each, marks=pytest.mark.heavy) for each in (beside, surfac
         trade_off,
         comparison,
         shop,
+        filled,
         like,
         estimate,
         convert,
