@@ -69,7 +69,7 @@ LIMITS = {  # of what is warned, where, and a drawing with such a value
 @pytest.mark.parametrize("words", LIMITS)
 def test_value_beyond_its_limit_alone_is_warned_of(words: str) -> None:
     limit, drawn = LIMITS[words]
-    cues = (cf.Cue(drawn(limit * factor), 0.43, shaft_mass_measured=True) for factor in (0.97, 1.03))
+    cues = (cf.Cue(drawn(limit * factor), 0.43, shaft_mass_measured=True) for factor in (0.995, 1.005))
     below, above = (any(words in line for line in plausibility_warnings(cf.Scene(cue))) for cue in cues)
     assert below != above
 
