@@ -134,7 +134,9 @@ def _with_limits(usual: Limits, texts: ShopLimits, file: Path, key: Callable[[st
     help="Save the cue of table row ROW (1 is the first), or of the best changes together, as the .toml of -o.",
 )
 @click.option("--wall", metavar="LENGTH", help='Least wall of a bore or tube, e.g. ".100 in" (default: wood 2.5 mm).')
-@click.option("--keep", metavar="PARTS", help=f"Parts that stay as they are, with commas: {', '.join(PARTS)}.")
+@click.option(
+    "--keep", metavar="PARTS", multiple=True, help=f"Parts that stay as they are, with commas: {', '.join(PARTS)}."
+)
 @click.option(
     "--stiffness-loss", metavar="SHARE", help='Largest loss of stiffness of changes together (default: "5 %").'
 )
@@ -150,7 +152,7 @@ def improve(
     request: Request,
     take: str | None,
     wall: str | None,
-    keep: str | None,
+    keep: tuple[str, ...],
     stiffness_loss: str | None,
     like: Path | None,
     output: Path | None,
@@ -163,7 +165,7 @@ def improve(
     Each change is applied on its own and computed by the coupled strike. Rows are sorted by squirt, lowest first. Above
     them: the best two changes together, within the limits; sizes are those of a shop.
     """
-    parts = () if keep is None else tuple(part.strip().casefold() for part in keep.split(","))
+    parts = tuple(part.strip().casefold() for text in keep for part in text.split(","))
     limits = _with_limits(shop_limits(request), ShopLimits(wall, parts, stiffness_loss), request.file, option)
     drawing = output if output is not None and output.suffix.lower() == ".toml" else None
     if take is None and drawing is not None:
