@@ -49,6 +49,7 @@ def prose(docstring: str) -> str:
     return re.sub(r"\"[^\"]*\"|'[^'\n]*'|`[^`]*`|\(\d* ?\w+(?:, \d* ?\w+)+\)", "", text)
 
 
+@pytest.mark.heavy
 def test_numbers_of_docstrings_are_examples_or_listed() -> None:
     """A number with a unit in prose: nothing computes it again, unless the list says what does."""
     found: dict[str, list[str]] = {}

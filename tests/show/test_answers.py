@@ -72,6 +72,7 @@ def test_frame_without_pandas_is_refused_in_one_line(monkeypatch: pytest.MonkeyP
         cf.natural_frequencies(cf.load_scene(KIM)).to_frame()
 
 
+@pytest.mark.heavy
 def test_answers_in_one_notebook_share_no_id_script_or_frame() -> None:
     """Of a miscue, too, whose page does not exist: its numbers alone."""
     scene = cf.load_scene(KIM)
