@@ -33,9 +33,7 @@ def draw_report(cue: Path, picture: Path) -> None:
 
 
 if __name__ == "__main__":
-    others = [Path(name) for name in sys.argv[1:2]]
-    (near_study,) = others or [chain.STUDY.path.parent]
-    (near_studies,) = others or [STUDIES]
+    other = Path(sys.argv[1]) if len(sys.argv) > 1 else None
     for name, figure in chain.STUDY.figures.items():
-        figure.save(near_study / name)
-    draw_report(STUDIES.parent / "meshes" / "pool_hollow.toml", near_studies / "report.png")
+        figure.save((other or chain.STUDY.path.parent) / name)
+    draw_report(STUDIES.parent / "meshes" / "pool_hollow.toml", (other or STUDIES) / "report.png")

@@ -63,7 +63,7 @@ class Question(NamedTuple):
         return function
 
     def answer(self) -> type[Analysis]:
-        """The class of its answers: the one that its function says it returns."""
+        """The class of its answers, which its function is annotated to return."""
         function = self.function()
         kind: type[Analysis] = function.__globals__[function.__annotations__["return"]]
         return kind

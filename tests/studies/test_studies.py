@@ -75,7 +75,7 @@ def test_study_of_own_stroke_rejects_other_scenes() -> None:
 
 @pytest.mark.heavy
 def test_stored_makers_are_those_of_the_package() -> None:
-    """The stored makers come from interpolated strikes, hence the tolerance of a hundredth of a standard deviation."""
+    """To a hundredth of a standard deviation: the stored makers come from interpolated strikes."""
     for row in calibration.ROWS[:2]:
         made, stored = calibration.maker(row, 0), calibration.stored()[row.name][0]
         assert made.off == pytest.approx(stored.off, abs=0.01 * made.stated)
