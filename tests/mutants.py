@@ -6,8 +6,8 @@ records which test executes which line. Then each mutant is written into a copy 
 execute its line run, the shortest first, until one fails. Their process has a limit of processor time, not of time: a
 busy machine has no effect. A mutant that does not compile, or compiles to the same code, is not drawn.
 `equivalent_mutants.txt` lists mutants that no test can detect, each with its reason.
-A number becomes a tenth larger, an integer the next one. At the level of a module, a power of ten that is very small or
-large becomes a thousand times larger, and an integer from ten on half as large: such numbers are tolerances and
+A number becomes a tenth larger, an integer the next one. A power of ten that is very small or large becomes a thousand
+times larger, and at the level of a module an integer from ten on half as large: such numbers are tolerances and
 resolutions, whose neighbours change no digit that anyone is promised.
 Printed: one line a mutant, then detected fractions by group and room with their 95 % intervals (Wilson).
 This file is also the plugin of pytest that takes the chosen tests in their order.
@@ -46,7 +46,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 INTERFACE = ("analysis", "cli", "designs", "designer", "files", "handbook", "measurements", "show")
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.txt")
-SECONDS = 60.0  # of tests a mutant, as the first run measured them
+SHARE = 0.5  # of the tests, by their seconds in the first run, that judge a mutant at most
 START = 60.0  # s of processor time that a process may take beside its tests
 STILL = 1800.0  # s after which a process that waits is ended
 FIRST = 12  # tests of the first process: most mutants are detected by them, and few test files are imported
@@ -115,6 +115,8 @@ def changed(node: ast.AST, in_function: bool = True) -> ast.expr | ast.AugAssign
     match node:
         case ast.BinOp(ast.JoinedStr() | ast.Constant(str()), _, _):
             return None  # no text has another operator
+        case ast.BinOp(left, ast.Add() | ast.Sub(), right) if is_tolerance(left) or is_tolerance(right):
+            return None  # a number and its round-off
         case ast.BinOp(left, op, right) if type(op) in SWAPS:
             return ast.BinOp(left, SWAPS[type(op)](), right)
         case ast.AugAssign(target, op, value) if type(op) in SWAPS:
@@ -129,23 +131,28 @@ def changed(node: ast.AST, in_function: bool = True) -> ast.expr | ast.AugAssign
             return ast.Constant(not value)
         case ast.Constant(int(value)) if value >= 10 and not in_function:
             return ast.Constant(value // 2)
-        case ast.Constant(float(value)) if is_order_of_magnitude(value) and not in_function:
+        case ast.Constant(float(value)) if is_order_of_magnitude(value):
             return ast.Constant(1e3 * value)
         case ast.Constant(int(value) | float(value)):
             return ast.Constant(value + 1 if isinstance(value, int) or value == 0 else 1.1 * value)
     return None
 
 
-def is_order_of_magnitude(value: float) -> bool:
+def is_order_of_magnitude(value: object) -> bool:
     """Whether a number is a power of ten beyond 1e-4 to 1e6: of a tolerance, or of something that is never reached."""
-    return value > 0 and math.log10(value).is_integer() and not 1e-4 < value < 1e6
+    return isinstance(value, float) and value > 0 and math.log10(value).is_integer() and not 1e-4 < value < 1e6
+
+
+def is_tolerance(node: ast.expr) -> bool:
+    """Whether an expression is a small power of ten."""
+    return isinstance(node, ast.Constant) and is_order_of_magnitude(node.value) and node.value < 1
 
 
 def expressions(node: ast.AST, in_function: bool = False) -> Iterator[tuple[ast.expr | ast.AugAssign, bool]]:
     """Expressions below a node that are evaluated, each with whether it stands in a function's body.
 
     Annotations, patterns and the parts of f-strings, whose positions Python 3.11 does not know, are left out, and what
-    no result depends on.
+    no result depends on: overloads, too, which say types alone.
     """
     for name, value in ast.iter_fields(node):
         if name in ("annotation", "returns", "pattern") or isinstance(node, ast.JoinedStr):
@@ -158,8 +165,13 @@ def expressions(node: ast.AST, in_function: bool = False) -> Iterator[tuple[ast.
         for child in value if isinstance(value, list) else [value]:
             if isinstance(child, ast.expr | ast.AugAssign):
                 yield child, inside
-            if isinstance(child, ast.AST):
+            if isinstance(child, ast.AST) and not is_overload(child):
                 yield from expressions(child, inside)
+
+
+def is_overload(node: ast.AST) -> bool:
+    """Whether a node is a signature for type checkers."""
+    return isinstance(node, ast.FunctionDef) and "overload" in map(ast.unparse, node.decorator_list)
 
 
 def python_mutants(path: Path) -> Iterator[Mutant]:
@@ -259,13 +271,13 @@ class Reach(NamedTuple):
     def chosen(self, mutant: Mutant) -> list[str]:
         """Tests for a mutant: those that execute its line, else those of its file; then the others of their files.
 
-        Of each kind the shortest come first, up to ``SECONDS`` in all; for a mutant at module level those of defaults,
+        Of each kind the shortest come first, up to ``SHARE`` of all; for a mutant at module level those of defaults,
         tables and golden files.
         """
         files = KERNEL_CALLS if mutant.group == "C" else (mutant.file,)
         of_file = set().union(*(tests for file in files for tests in self.tests[file].values()))
         at_line = set() if mutant.group in ("C", "module level") else self.tests[mutant.file].get(mutant.line, set())
-        reached = (at_line or of_file) & self.seconds.keys()
+        reached = at_line & self.seconds.keys() or of_file & self.seconds.keys()  # else imports alone execute it
         if mutant.group == "C":
             reached = {name for name in reached if name.startswith(KERNEL_TESTS)}
         of_tables = {name for name in self.seconds if name.startswith(TABLE_TESTS)}
@@ -273,8 +285,8 @@ class Reach(NamedTuple):
         homes = {test_file(name) for name in reached}
         beside = {name for name in self.seconds if test_file(name) in homes}
         ordered = [*self.ordered(first), *self.ordered(reached - first), *self.ordered(beside - reached - first)]
-        total = itertools.accumulate(self.seconds[name] for name in ordered)
-        return [name for name, until in zip(ordered, total, strict=True) if until < SECONDS]
+        until, most = itertools.accumulate(self.seconds[name] for name in ordered), SHARE * sum(self.seconds.values())
+        return [name for name, end in zip(ordered, until, strict=True) if end < most]
 
     def ordered(self, names: set[str]) -> list[str]:
         """The shortest test first."""
