@@ -196,7 +196,7 @@ def text() -> str:
         "## Check",
         "Transverse impulse over μ times the normal impulse on solid maple, a spring tip with dome and compliance, "
         "by `cf.strike` and by "
-        "the independent oracle (spectral beam, small steps): "
+        "the independent oracle (scikit-fem's beam, small steps): "
         + "; ".join(f"{a:.4f} and {b:.4f} at b/R {offset:g}" for offset, a, b in check())
         + ".",
         "## Measurement",

@@ -201,11 +201,11 @@ def check_table() -> str:
 def oracle_changes() -> list[tuple[float, float, float]]:
     """xi, and the change of squirt by clay, %, of the coupled strike and of the oracle in small steps."""
     base = pool_scene(strokes.plain_maple(), TIME, 0.3, (strokes.DOME, strokes.SHEAR))
-    plain, stepped = cf.strike(base).squirt, solve_small_steps(base, 60, 1000).squirt
+    plain, stepped = cf.strike(base).squirt, solve_small_steps(base, 150, 1000).squirt
     rows = []
     for xi in (0.5, 1.0, 1.3):
         heavier = with_clay(base, place(base.shaft, xi, TIME))
-        ratios = cf.strike(heavier).squirt / plain, solve_small_steps(heavier, 60, 1000).squirt / stepped
+        ratios = cf.strike(heavier).squirt / plain, solve_small_steps(heavier, 150, 1000).squirt / stepped
         rows.append((xi, *(100 * (ratio - 1) for ratio in ratios)))
     return rows
 

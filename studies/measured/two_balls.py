@@ -171,7 +171,7 @@ def text() -> str:
         table(["input", "change of squirt", "range"], rows),
         f"The lumped cue of equal squirt changes by {100 * math.expm1(maple.lumped):+.1f} %. A spring tip of one "
         f"stiffness with dome and compliance: "
-        f"ln ratio {coupled:+.4f} by `cf.strike`, {oracle:+.4f} by the independent oracle (spectral beam, small "
+        f"ln ratio {coupled:+.4f} by `cf.strike`, {oracle:+.4f} by the independent oracle (scikit-fem's beam, small "
         f"steps).",
         "## Experiment",
         "1. Weigh two balls of one diameter: an ordinary cue ball (156 to 170 g) and a heavier one (about 200 g, "
