@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.analysis.shop_changes import changes_of
+from cuefem.analysis.shop_changes import changes_of, dimensions_of
 from cuefem.cli import listed_commands
 from cuefem.cue.materials import material
 from cuefem.designer.controls import KNOBS, parse, range_of
@@ -116,12 +116,15 @@ def effects(folder: Path) -> list[object]:
 
 
 def changes(folder: Path) -> list[object]:
-    """Every change that `cuefem improve` tries on solid, bored and tubular shafts, in both units."""
+    """Every change that `cuefem improve` tries on solid, bored and tubular shafts, in both units; ranges of sizes."""
     scenes = [cf.usual_scene(cf.load(f"meshes/{name}.toml")) for name in ("pool_maple", "pool_hollow", "carbon")]
+    scenes.append(cf.with_parameters(scenes[0], {"ferrule length": 0.0099, "tip height": 0.0029}))
     rows: list[object] = []
     for system in ("metric", "us"):
         with displayed_in(system):
             rows += [change for scene in scenes for change in changes_of(scene)]
+            sizes = [size for scene in scenes for size in dimensions_of(scene)]
+            rows += [(size.change(size.size(1)).label, *size[1:]) for size in sizes]
     return rows
 
 
@@ -131,7 +134,7 @@ def warnings(folder: Path) -> list[object]:
     tungsten = cf.Material(4e11, 1.6e11, 2000.0)
     cones = ((0.2, 0.004, 0.05), (0.5, 0.08, 0.09), (1.0, 0.02, 0.03))
     cue = cf.Cue(tuple(cf.Segment(*cone, tungsten) for cone in cones), 0.9)
-    ball, tip = cf.Ball(mass=0.6, radius=0.06), cf.Tip(restitution=0.99, friction=1.5, contact_time=0.02)
+    ball, tip = cf.Ball(mass=0.6, radius=0.06), cf.Tip(restitution=0.96, friction=1.25, contact_time=0.02)
     scenes = [cf.Scene(cue, ball, tip, cf.Stroke(50.0, 0.3), (cf.TipDome(0.2),)), cf.Scene(cf.LumpedCue(0.1, 0.01))]
     scenes.append(cf.Scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, MAPLE, 0.0, 0.003),), 0.4)))
     thin_walled = cf.Segment(0.7, 0.0127, 0.021, MAPLE, 6e-4, 0.0209)
@@ -149,6 +152,7 @@ def limits(folder: Path) -> list[object]:
         *(partial(replace(tip, height=height).check_diameter, 0.012) for height in (5e-4, 0.04)),
         *(partial(cf.Resolution, 8, 6, 40, steps=steps) for steps in (19, 1_000_001)),
         partial(with_parameters, scene, {"shaft mass": 1e-3}),
+        partial(with_parameters, cf.usual_scene(cf.load("meshes/pool_maple.toml")), {"ferrule length": 1.0}),
         partial(cf.Span, 1.0, 2.0, 2**20 + 1),
         partial(cf.save_motion, scene, folder / "motion", frames=10_001),
         partial(spectral_peaks, np.arange(2.0)[::-1, None], 5e3, 50.0, 500.0),

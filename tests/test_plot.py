@@ -53,6 +53,7 @@ def test_colour_of_a_segment_tells_the_kind_of_its_material() -> None:
         cue = cf.Cue(tuple(cf.Segment(0.4, 0.012, 0.012, cf.Material(E, E / 3, rho)) for E, rho in pair), 0.4)
         (colours[kind],) = {tuple(item.get_facecolor()[0]) for item in cf.plot.shaft(cue).collections}
     assert len({*colours.values()}) == len(kinds)
+    assert sum(colours["foam"]) > sum(colours["leather"])  # lighter
 
 
 def test_modes_figure_lists_frequencies_of_cue() -> None:

@@ -85,8 +85,9 @@ def report_parts(scene: Scene, answers: Answers) -> list[Record]:
             answers[key].charts(),
             folded=part.folded,
             engineer=part.engineer,
+            about=answers[key].about,
+            more=answers[key].more_charts(),
         )
-        | {"about": answers[key].about, "more": answers[key].more_charts()}
         for key, part in report_sections().items()
         if key in answers
     ]
@@ -108,11 +109,13 @@ def _section(
     tables: Sequence[Any],
     charts: Sequence[Any] = (),
     *,
-    folded: bool = False,
-    engineer: bool = False,
+    folded: bool,
+    engineer: bool,
+    about: str = "",
+    more: Sequence[Any] = (),
 ) -> Record:
-    """A section of a page; folded: closed at first. engineer: a part for engineers."""
-    shown = {"key": key, "title": title, "tables": tables, "charts": charts, "about": "", "more": []}
+    """A section of a page; folded: closed at first. engineer: a part for engineers. more: charts folded below it."""
+    shown = {"key": key, "title": title, "tables": tables, "charts": charts, "about": about, "more": more}
     return {**shown, "folded": folded, "engineer": engineer}
 
 
@@ -158,7 +161,7 @@ def _beside(scene: Scene, answers: Answers, name: str, beside: Beside, squirt_fa
 
 def section_of(table: Table, charts: Sequence[Chart]) -> Record:
     """The section of compared cues."""
-    return _section("other", table.title, [table], charts)
+    return _section("other", table.title, [table], charts, folded=False, engineer=False)
 
 
 def headline_cue(scene: Scene, answers: Answers, name: str) -> HeadlineCue:

@@ -298,7 +298,8 @@ def _check_bounces(contact: SolvedContact, energy: dict[str, float]) -> None:
 
 def _failure(model: ContactModel, state: KernelState) -> Exception:
     """The exception for a contact that did not end."""
-    if state.status == CONSTANTS["INDENTATION_OUT_OF_RANGE"] and isinstance(model.tip, LeatherLaw):
+    if state.status == CONSTANTS["INDENTATION_OUT_OF_RANGE"]:
+        assert isinstance(model.tip, LeatherLaw)
         return model.tip.out_of_range(state.indentation)
     if state.status == CONSTANTS["SLOPE_OUT_OF_RANGE"]:
         return SlopeOutOfRange(

@@ -59,6 +59,7 @@ def test_rigid_front_equals_closed_forms_of_kims_cue_end() -> None:
     assert kim_reduction().front_ratio == pytest.approx(4.23, abs=5e-3)
     thin = rod(1000.0)
     assert RigidFront.of(thin).length_of(thin.shaft_mass / 4) == pytest.approx(thin.length, rel=2e-5)
+    assert front.length_of(front.end_mass[-1]) == pytest.approx(0.7)
     assert front.length_of(1.0) is None
 
 

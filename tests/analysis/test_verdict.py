@@ -42,6 +42,8 @@ def test_verdict_uncertainty_is_quadrature_sum_of_parts(own: Verdict) -> None:
     assert own.squirt_error == pytest.approx(uncertainty["total"] * own.squirt, rel=1e-12)
     assert uncertainty["inputs"] == pytest.approx(math.hypot(*own.inputs.values()), rel=1e-12)
     assert {"E", "rho", "tip_height"} <= set(own.inputs)
+    small = replace(own, squirt=math.radians(0.01234), squirt_error=math.radians(0.00321))
+    assert small.squirt_text() == ("0.012°", "0.003°")
 
 
 @pytest.mark.parametrize(

@@ -49,3 +49,10 @@ def test_motion_relative_velocity_equals_history(name: str, offset: float) -> No
     result = motion(scene, [0.0, end], AT)
     np.testing.assert_allclose(sliding_path(result, scene)[1], expected, rtol=0, atol=1e-5 * SCENE.stroke.speed * end)
     assert result.duration == outcome.phases[-1].end
+
+
+def test_motion_is_continuous_at_separation() -> None:
+    end = cf.strike(SCENE, AT).phases[-1].end
+    result = motion(SCENE, [end - 1e-9, end + 1e-9], AT)
+    moved = np.array([np.diff(result.axial), np.diff(result.deflection(np.array(0.0))[0])])
+    assert np.abs(moved).max() < 2e-9 * 2 * SCENE.stroke.speed

@@ -57,6 +57,15 @@ def test_second_hit_that_does_not_occur_changes_nothing(offset: float, window: f
     assert cf.strike(replace(scene, effects=(*scene.effects, cf.SecondHit(window))), at) == cf.strike(scene, at)
 
 
+@pytest.mark.parametrize(("offset", "friction"), [(0.3, 0.345), (0.3, 0.348), (0.6, 0.768), (0.6, 0.77), (0.9, 3.0)])
+def test_jam_is_a_slip_that_hastens_the_approach(offset: float, friction: float) -> None:
+    scene = kim_scene(offset)
+    outcome = cf.strike(replace(scene, tip=replace(scene.tip, friction=friction)), AT)
+    first, second = -outcome.history(outcome.history.ends[:2])["velocity_n"]
+    assert outcome.phases[0].state == "slip"
+    assert outcome.jam == (second > first)
+
+
 STRIKER = cf.Striker(mass=0.02, restitution=0.8, contact_time=1e-3)
 
 

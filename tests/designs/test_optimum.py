@@ -174,6 +174,7 @@ def test_designs_that_are_not_distinct_are_marked() -> None:
     tight = replace(BORE, range=Span(bore, 1.005 * bore))
     result = cf.study(replace(PROBLEM, vary=(tight,), objective=Response("end_mass"), limits=()))
     assert isinstance(result, OptimumResult)
+    assert result.values()["objective"] == {"minimize": "end_mass"}
     assert not result.changes["end_mass"]["distinct"]
     assert "% *" in str(result)
     assert NOT_DISTINCT in " ".join(str(result).split())

@@ -117,6 +117,12 @@ def test_geometric_stiffness_squirt_equals_exact_chain(speed: float, offset: flo
     assert squirt < 0.95 * straight
 
 
+def test_end_mass_of_a_velocity_step_is_without_the_axial_force() -> None:
+    scene = cf.Scene(cf.load("meshes/carbon.toml"))
+    with_thrust, without = (cf.end_mass(replace(scene, effects=of), "stick") for of in ((THRUST,), ()))
+    assert with_thrust == without
+
+
 def test_geometric_stiffness_out_of_range_raises_with_its_force() -> None:
     thin = cf.Cue((cf.Segment(0.7, 0.005, 0.006, cf.Material(E=12.6e9, G=0.84e9, rho=700.0)),), body_mass=0.5)
     scene = cf.Scene(thin, tip=cf.Tip(contact_time=4e-3), stroke=cf.Stroke(20.0, 0.5), effects=(THRUST,))

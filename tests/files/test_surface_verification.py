@@ -112,6 +112,16 @@ def test_surface_a_little_off_its_axis_gives_the_same_shaft(tilt: float) -> None
     assert np.hstack(piece) == pytest.approx([0.7, 0.012, 0.021, 0, 0], rel=1e-5)
 
 
+def test_fin_without_thickness_is_no_outline() -> None:
+    """Two triangles back to back, as CAD programs leave them inside a body."""
+    points, faces = revolve(outline_of(KIM), 24)
+    fin = np.array([[0.1, 0, 0], [0.3, 1e-3, 0], [0.3, 0, 1e-3]])
+    first, second, third = len(points) + np.arange(3)
+    both = np.array([[first, second, third], [first, third, second]])
+    body = aligned_surface(np.concatenate([points, fin]), np.concatenate([faces, both]))
+    assert body.cut(0.2).outlines == (1, 0)
+
+
 def test_polygon_faces_are_triangulated(tmp_path: Path) -> None:
     turn = 2 * np.pi * np.arange(12) / 12
     corners = [f"v {x} {6 * np.cos(t)} {6 * np.sin(t)}" for x in (0, 500) for t in turn]
@@ -148,17 +158,21 @@ def test_surface_of_few_facets_on_a_circle_is_the_turned_shape(facets: int, tmp_
     assert drawing_warnings(tmp_path / "shaft.stl") == []
 
 
-def faceted(folder: Path, facets: int) -> Path:
-    """A cone whose corners lie 1 % inside and outside a circle, alternately."""
-    points, triangles = revolve([(0, 0), (0, 0.006375), (0.7366, 0.01075), (0.7366, 0)], facets)
+def faceted(folder: Path, facets: int, bow: float = 0.0) -> Path:
+    """A cone whose corners lie 1 % inside and outside a circle, alternately, along a bow of this rise, m."""
+    x = np.linspace(0, 0.7366, 21)
+    points, triangles = revolve([(0, 0), *zip(x, 0.006375 + 0.00594 * x, strict=True), (0.7366, 0)], facets)
     angle = np.arctan2(points[:, 2], points[:, 1])
     points[:, 1:] *= 1 + 0.01 * np.cos(facets / 2 * angle)[:, None]
+    points[:, 1] += bow * (2 * points[:, 0] / 0.7366 - 1) ** 2
     return write_surface(folder / "shaft.stl", points, triangles, binary=True)
 
 
-def test_surface_of_facets_off_a_circle_warns(tmp_path: Path) -> None:
+@pytest.mark.parametrize("bow", [0.0, 3e-4])
+def test_surface_of_facets_off_a_circle_warns(bow: float, tmp_path: Path) -> None:
+    """Also along a bow that is straight enough."""
     with pytest.warns(cf.PlausibilityWarning, match=r"facets are coarse: corners lie up to \d.\d % of the diameter"):
-        cf.load(faceted(tmp_path, 12))
+        cf.load(faceted(tmp_path, 12, bow))
 
 
 def test_surface_of_six_facets_off_a_circle_is_rejected(tmp_path: Path) -> None:

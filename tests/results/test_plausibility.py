@@ -51,7 +51,8 @@ def ferruled(length: float) -> tuple[cf.Segment, ...]:
 LIMITS = {  # of what is warned, where, and a drawing with such a value
     "ferrule length": (5e-4, ferruled),
     "a ferrule on its tenon": (0.06, ferruled),
-    "wall of": (2e-4, lambda x: (piece(0.1, bore=0.01275 - 2 * x), CONE)),
+    "wall of": (2e-4, lambda x: (replace(piece(0.1), tip_bore=0.01275 - 2 * x), CONE)),
+    "wall of segments[0]": (2e-4, lambda x: (replace(piece(0.1), butt_bore=0.01275 - 2 * x), CONE)),
     "bore of": (1e-3, lambda x: (piece(0.1, bore=x), CONE)),
     "drawn mass": (0.02, lambda x: (piece(0.5, made=replace(WOOD, rho=x / (np.pi / 4 * 0.01275**2 * 0.5))),)),
     "diameter jumps": (1.5, lambda x: (CONE, piece(0.3, 0.0215 * x))),

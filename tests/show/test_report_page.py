@@ -43,6 +43,7 @@ def test_axis_ticks_are_round_numbers() -> None:
         (f"{i / 2}", pytest.approx(10 * i)) for i in range(7)
     ]
     assert Axis("x").scale_for([np.zeros(3)])[:2] == (0.0, 1.0)
+    assert Axis("x", from_zero=False).scale_for([np.full(3, 5.0)])[:2] == pytest.approx((4.4, 5.6))
 
 
 def box(outline: str) -> np.ndarray:
