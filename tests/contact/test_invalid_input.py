@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from math import inf, nan
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -12,6 +11,7 @@ from cuefem.beam.tip_modes import lumped_tip_modes
 from cuefem.contact.contact_model import model_of
 from cuefem.contact.step_records import solve_contact
 from cuefem.scene.solved_scene import default_mode_count
+from studies.strokes import cue
 from tests.helpers.invalid_input import assert_calls_refused
 from tests.helpers.leather_scenes import leather_scene
 from tests.helpers.strike_scenes import KIM, kim_scene
@@ -23,8 +23,7 @@ PLANAR = cf.Scene(cf.LumpedCue(0.54, 0.004), BALL, cf.Tip(0.75, 0.7), cf.Stroke(
 RAISED = replace(PLANAR, effects=(cf.Elevation(0.1),))
 HAMMER = cf.Striker(0.005, 0.8, contact_time=1e-3)
 LUMPED = cf.Scene(cf.LumpedCue(0.54, 0.006, 3.0), stroke=cf.Stroke(offset=0.3))
-CARBON = cf.load(Path(__file__).parents[2] / "meshes" / "carbon.toml")
-BOUNCING = cf.Scene(CARBON, tip=cf.Tip(0.85, inf, contact_time=1e-3), stroke=cf.Stroke(2.0, 0.82))
+BOUNCING = cf.Scene(cue("carbon"), tip=cf.Tip(0.85, inf, contact_time=1e-3), stroke=cf.Stroke(2.0, 0.82))
 OFF_CENTRE = cf.Scene(cf.LumpedCue(0.54, 0.003), stroke=cf.Stroke(offset=0.3))
 
 

@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,6 +19,7 @@ from cuefem.contact.ports import Raised
 from cuefem.contact.step_records import solve_contact
 from cuefem.contact.strike import strike_modes
 from cuefem.scene.solved_scene import tip_modes_of
+from studies.strokes import cue as reference_cue
 from tests.data.stored import strike_row, strikes
 from tests.helpers.cues import rod, stiff_ferrule
 from tests.helpers.orders import assert_error_falls_with_the_step
@@ -37,8 +37,7 @@ from tests.helpers.strike_scenes import (
 )
 
 pytestmark = pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
-MESHES = Path(__file__).parents[2] / "meshes"
-POOL, CARBON = (cf.load(MESHES / f"{name}.toml") for name in ("pool_maple", "carbon"))
+POOL, CARBON = reference_cue("pool_maple"), reference_cue("carbon")
 TUBE = cf.usual_scene(CARBON).cue
 # The position of an event in its step is random: the RMS of many errors has the order.
 ORDER, WITHIN = 2.0, 0.4
@@ -112,40 +111,42 @@ def test_clamp_behind_the_tip_is_nearly_one_at_the_tip(position: float) -> None:
     assert squirts[1] == pytest.approx(squirts[0], rel=1e-3)
 
 
-@pytest.mark.parametrize("friction", [100.0, math.inf])
-@pytest.mark.parametrize("steps", [200, 800, 6400])
-def test_tip_that_strong_friction_turns_away_hits_again(friction: float, steps: int) -> None:
-    """The front of the cue bounces off a ball that it has hardly moved, and the cue follows: 0.0815 at friction 5."""
-    tip, stroke = cf.Tip(0.85, friction, contact_time=1e-3), cf.Stroke(2.0, 0.82)
-    scene = cf.Scene(CARBON, cf.Ball(0.17, 0.028575), tip, stroke, (cf.TipDome(0.0095),))
-    outcome = strike_modes(scene, tip_modes_of(scene), steps=steps)
-    assert outcome.squirt == pytest.approx(0.0808, rel=1e-2)
-    assert outcome.regime in ("stick", "late stick")
-    assert energy_residual(outcome) < 1e-4
-
-
-@pytest.mark.parametrize("friction", [1e4, math.inf])
-def test_second_hit_of_infinite_friction_is_that_of_large_friction(friction: float) -> None:
-    """Bare maple far off centre is hit again: squirt 0.0472 after the first contact, 0.05300 of 12,800 steps."""
-    tip, stroke = cf.Tip(0.85, friction, contact_time=8e-4), cf.Stroke(2.0, 0.7)
-    outcome = cf.strike(cf.Scene(POOL, cf.Ball(0.17, 0.028575), tip, stroke, (cf.SecondHit(),)))
-    assert outcome.squirt == pytest.approx(0.0530, rel=2e-3)
-
-
 THRUST = (cf.TipDome(0.0095), cf.AxialWaves(), cf.GeometricStiffness())
-HARD = {  # squirt of small steps: of 400 modes and 12,800 steps, and of 6,400 steps
-    "low restitution": (POOL, cf.Tip(0.2348983, 0.8133191, contact_time=7.0436e-4), -0.3755904, (), None, -0.0214451),
-    "infinite friction": (CARBON, cf.Tip(0.985, math.inf, contact_time=6.68e-4), -0.86355, (), None, -0.0162106),
-    # whose 300th mode swings through 10 rad in a step of 1/100 of the contact time
-    "many modes": (TUBE, cf.Tip(contact_time=1e-3), 0.3, THRUST, cf.Resolution(1, 40, 300, 100), 0.032486),
-}
+# Cue, tip, b/R, effects, modes, steps; squirt of many small steps, and the relative difference from it.
+HARD: list[tuple[cf.Cue, cf.Tip, float, tuple[cf.Effect, ...], cf.Resolution | None, int | None, float, float]] = [
+    # friction turns the front of the cue away from a ball that it has hardly moved; the cue follows, and hits again
+    *(
+        (CARBON, cf.Tip(0.85, friction, contact_time=1e-3), 0.82, (cf.TipDome(0.0095),), None, steps, 0.0808, 1e-2)
+        for friction, steps in product((100.0, math.inf), (200, 800, 6400))
+    ),
+    # bare maple far off centre is hit again: 0.0472 after the first contact
+    *(
+        (POOL, cf.Tip(0.85, friction, contact_time=8e-4), 0.7, (cf.SecondHit(),), None, None, 0.0530, 2e-3)
+        for friction in (1e4, math.inf)
+    ),
+    # low restitution and infinite friction
+    (POOL, cf.Tip(0.2348983, 0.8133191, contact_time=7.0436e-4), -0.3755904, (), None, None, -0.0214451, 1e-3),
+    (CARBON, cf.Tip(0.985, math.inf, contact_time=6.68e-4), -0.86355, (), None, None, -0.0162106, 1e-3),
+    # the 300th mode swings through 10 rad in a step of 1/100 of the contact time
+    (TUBE, cf.Tip(contact_time=1e-3), 0.3, THRUST, cf.Resolution(1, 40, 300), 100, 0.032486, 2e-3),
+]
 
 
-@pytest.mark.parametrize("kind", HARD)
-def test_squirt_of_hard_tips_and_of_many_modes_is_that_of_small_steps(kind: str) -> None:
-    cue, tip, offset, effects, at, squirt = HARD[kind]
+@pytest.mark.parametrize(("cue", "tip", "offset", "effects", "at", "steps", "squirt", "within"), HARD)
+def test_squirt_of_hard_contacts_is_that_of_small_steps(
+    cue: cf.Cue,
+    tip: cf.Tip,
+    offset: float,
+    effects: tuple[cf.Effect, ...],
+    at: cf.Resolution | None,
+    steps: int | None,
+    squirt: float,
+    within: float,
+) -> None:
     scene = cf.Scene(cue, cf.Ball(0.17, 0.028575), tip, cf.Stroke(2.0, offset), effects)
-    assert cf.strike(scene, at).squirt == pytest.approx(squirt, rel=1e-3 if at is None else 2e-3)
+    outcome = strike_modes(scene, tip_modes_of(scene, at), steps=steps)
+    assert outcome.squirt == pytest.approx(squirt, rel=within)
+    assert energy_residual(outcome) < 1e-4
 
 
 @pytest.mark.kernel

@@ -18,7 +18,7 @@ import cuefem as cf
 from cuefem import Outcome
 from tests.contact.test_independent_effects import KINDS as RANDOM_KINDS
 from tests.contact.test_independent_effects import RandomScene
-from tests.data.stored import DATA, strike_row, strikes
+from tests.data.stored import strike_row, strikes
 from tests.helpers.golden_numbers import assert_golden_numbers
 from tests.helpers.strike_scenes import KIM, KIM_AT, KIM_TIP, energy_residual
 
@@ -110,10 +110,3 @@ def test_strike_each_kind_equals_stored_and_golden_answers(kind: str, request: p
         initial = row["answer"]["energy"]["initial"]
         for name, joules in row["answer"]["energy"].items():
             assert abs(outcome.energy[name] - joules) < 2e-4 * initial, name
-
-
-def test_every_stored_file_says_who_made_it_how_and_to_which_tolerance() -> None:
-    table = [line.split("|")[1:-1] for line in (DATA / "README.md").read_text().splitlines() if line.startswith("| `")]
-    stored = {path.name for path in DATA.iterdir() if path.suffix not in ("", ".py", ".md")}
-    assert {row[0].strip(" `") for row in table} == stored
-    assert all(len(row) == 4 and all(cell.strip() for cell in row) for row in table)

@@ -3,27 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
 import cuefem as cf
 from cuefem.contact.tip_identification import IdentifiedTip, with_tip
 from cuefem.cue.materials import LEATHERS
+from studies.strokes import cue
 from tests.helpers.leather_scenes import LEATHER, leather_scene
-
-MESHES = Path(__file__).parents[2] / "meshes"
 
 
 def head_on(scene: cf.Scene) -> tuple[float, float]:
     """Contact time, s, and rebound."""
     return cf.strike(replace(scene, stroke=replace(scene.stroke, offset=0.0))).duration, cf.rebound(scene)
-
-
-def whole_cue() -> cf.Scene:
-    cue = cf.load(MESHES / "whole_cue.toml")
-    assert isinstance(cue, cf.Cue)
-    return cf.usual_scene(cue)
 
 
 def test_identify_tip_rigid_cue_recovers_tip() -> None:
@@ -36,10 +28,10 @@ def test_identify_tip_rigid_cue_recovers_tip() -> None:
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[] if n == "medium" else pytest.mark.heavy) for n in LEATHERS])
 def test_identify_tip_reproduces_measured_contact_time_and_rebound(name: str) -> None:
-    leather = LEATHERS[name]
-    result = cf.identify_tip(whole_cue(), leather.contact_time, 0.73)
+    leather, whole_cue = LEATHERS[name], cf.usual_scene(cue("whole_cue"))
+    result = cf.identify_tip(whole_cue, leather.contact_time, 0.73)
     assert (leather.E, leather.restitution) == pytest.approx(result, rel=3e-3)  # three digits are stored
-    assert head_on(with_tip(whole_cue(), IdentifiedTip(leather.E, leather.restitution))) == pytest.approx(
+    assert head_on(with_tip(whole_cue, IdentifiedTip(leather.E, leather.restitution))) == pytest.approx(
         (leather.contact_time, 0.73), rel=1e-3
     )
 
@@ -47,7 +39,5 @@ def test_identify_tip_reproduces_measured_contact_time_and_rebound(name: str) ->
 def test_rebound_of_reference_cues_is_in_published_range() -> None:
     """At 2 m/s, within 0.015 of the published range 0.71 to 0.75 (TP A.30); no parameter is fitted to these cues."""
     for game, name in (("pool", "pool_maple"), ("pool", "pool_hollow"), ("pool", "carbon"), ("carom", "kim")):
-        cue = cf.load(MESHES / f"{name}.toml")
-        assert isinstance(cue, cf.Cue)
-        scene = cf.usual_scene(cue, game)
+        scene = cf.usual_scene(cue(name), game)
         assert 0.71 - 0.015 < cf.rebound(replace(scene, stroke=cf.Stroke(2.0))) < 0.75 + 0.015

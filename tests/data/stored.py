@@ -27,13 +27,6 @@ from cuefem.scene import Scene
 
 DATA = Path(__file__).parent
 WOOD = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
-EFFECTS = {
-    kind.__name__: kind
-    for kind in (
-        *(cf.TipDome, cf.TipShear, cf.PowerLawTip, cf.RollingContact, cf.SecondHit, cf.Elevation, cf.LeatherTip),
-        *(cf.AxialWaves, cf.GeometricStiffness, cf.StructuralDamping),
-    )
-}
 
 
 @cache
@@ -78,7 +71,7 @@ def scene_of(row: dict[str, Any]) -> Scene:
         shaft = cf.Segment(0.7, diameter, diameter, WOOD)
         cue = cf.Cue((shaft,), body_mass=mass - cf.Cue((shaft,), body_mass=1.0).shaft_mass)
     tip = {name: math.inf if value == "inf" else value for name, value in numbers["tip"].items()}
-    effects = tuple(EFFECTS[name](**fields) for name, fields in numbers["effects"].items())
+    effects = tuple(getattr(cf, name)(**fields) for name, fields in numbers["effects"].items())
     return Scene(cue, cf.Ball(*numbers["ball"]), cf.Tip(**tip), cf.Stroke(*numbers["stroke"]), effects)
 
 

@@ -2,8 +2,6 @@
 
 import math
 from dataclasses import replace
-from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,18 +10,10 @@ import cuefem as cf
 from cuefem.beam.axial_modes import rod_modes
 from cuefem.cue.materials import MATERIALS
 from cuefem.scene.solved_scene import SolvedScene
+from studies.strokes import cue as reference_cue
 
-MESHES = Path(__file__).parents[2] / "meshes"
 MAPLE = MATERIALS["hard maple"].material
 TIP = cf.Tip(0.73, 0.7, contact_time=1.1e-3)
-
-
-@cache
-def reference_cue(name: str) -> cf.Cue:
-    """A reference cue."""
-    cue = cf.load(MESHES / f"{name}.toml")
-    assert isinstance(cue, cf.Cue)
-    return cue
 
 
 def head_on(cue: cf.Cue) -> cf.Scene:

@@ -16,6 +16,7 @@ from tests.helpers.strike_scenes import KIM, energy_residual, kim_scene
 CLAMPED = replace(kim_scene(0.3), effects=(cf.Support(0.0, inf),))
 CLAMP, SHEAR, LOSSY = cf.Support(0.7, inf, inf), cf.TipShear(0.75), cf.StructuralDamping(0.6)
 LEATHER, FLAT = cf.LeatherTip(6e-3, 9.5e-3, 1.4e8), cf.LeatherTip(6e-3, inf, 1e8)
+THIN = cf.Cue((cf.Segment(0.7, 0.005, 0.006, cf.Material(12.6e9, 0.84e9, 700.0)),), body_mass=0.5)
 DOME, RAISED, WAVES, FAR = cf.TipDome(0.01), cf.Elevation(0.1), cf.AxialWaves(), cf.Joint(0.9)
 
 

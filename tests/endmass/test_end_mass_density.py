@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cuefem import Cue, Material, Resolution, Scene, Tip, load
+from cuefem import Cue, Material, Resolution, Scene, Tip, load_cue
 from cuefem.endmass.definitions import end_mass
 from cuefem.endmass.end_mass_density import EndMassDensity, end_mass_density
 from studies.strokes import cue as reference_cue
@@ -31,8 +31,7 @@ def integral(result: EndMassDensity, cue: Cue, *names: str) -> float:
 @pytest.mark.parametrize("path", sorted(MESHES.glob("*.toml")), ids=lambda path: path.stem)
 def test_end_mass_density_parts_sum_to_end_mass(path: Path) -> None:
     """handbook: Effective end mass, on every cue in meshes/."""
-    cue = load(path)
-    assert isinstance(cue, Cue)
+    cue = load_cue(path)
     base = scene(cue)
     result = end_mass_density(base, Resolution(2, 14, 40))
     whole = result.end_mass - base.ball.mass * result.ball_mass - base.axial_mass * result.axial_mass

@@ -11,8 +11,6 @@ import cuefem as cf
 from cuefem.designs.study_file import load_study
 from cuefem.parameters.parts import main_material, with_shaft_mass
 from cuefem.parameters.scene_changes import with_parameters
-from cuefem.results.uncertainty import squirt_changes
-from cuefem.scene.solved_scene import SolvedScene
 from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import pool
 from tests.helpers.examples import examples
@@ -41,17 +39,6 @@ def test_shaft_mass_includes_tip_and_precedes_other_changes() -> None:
     assert bored == with_parameters(weighed, {"bore depth": 0.1})
     assert bored.shaft.shaft_mass < weighed.shaft.shaft_mass
     assert not with_parameters(weighed, {"shaft material": "ash"}).shaft.shaft_mass_measured
-
-
-@pytest.mark.heavy
-def test_weighed_density_is_not_uncertain() -> None:
-    scene = cf.usual_scene(pool())
-    inputs = [
-        squirt_changes(SolvedScene(each), cf.strike(each).squirt).of("squirt")
-        for each in (scene, with_parameters(scene, {"shaft mass": 0.112}))
-    ]
-    assert inputs[0]["rho"] > 0.02
-    assert {*inputs[0]} - {*inputs[1]} == {"rho"}
 
 
 def test_shaft_mass_option_and_file_key_agree(tmp_path: Path) -> None:

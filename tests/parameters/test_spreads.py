@@ -2,14 +2,14 @@
 
 from dataclasses import replace
 from math import asin, log, tan
-from pathlib import Path
 
 import pytest
 
 import cuefem as cf
 from cuefem.parameters.table import PARAMETERS
+from studies.strokes import cue
 
-HOLLOW = cf.load(Path(__file__).parents[2] / "meshes/pool_hollow.toml")
+HOLLOW = cue("pool_hollow")
 MAPLE = {"E": log(16.9 / 10.8) / 2, "G": log(1.55 / 0.85) / 2, "rho": log(780 / 630) / 2}  # cuefem/cue/materials.toml
 FRICTION = ((log(tan(asin(0.5)) / 0.7) ** 2 + log(tan(asin(0.55)) / 0.7) ** 2) / 3) ** 0.5  # [TP 2.1], [Kim]
 LEATHER = {"leather": 3.5 * 0.1, "restitution": 0.05, "tip_height": 0.1, "dome": 0.1}

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import cuefem as cf
 from cuefem.quantity.display import full_repr
+from studies.strokes import cue
 
-ROOT = Path(__file__).parents[2]
-CUE = cf.load(ROOT / "meshes" / "pool_hollow.toml")
-assert isinstance(CUE, cf.Cue)
+CUE = cue("pool_hollow")
 SCENE = cf.Scene(CUE, stroke=cf.Stroke(1.0, 0.3), effects=(cf.TipDome(0.0095),))
 LUMPED = [cf.Scene(cf.LumpedCue(0.5, 0.006), stroke=cf.Stroke(1.0, b)) for b in np.linspace(0, 0.4, 50)]
 OBJECTS = {

@@ -24,9 +24,6 @@ def test_field_integer_is_stored_as_float() -> None:
     assert type(Material(12_000_000_000, 840_000_000, 782).rho) is float
 
 
-MASS, SIZE = Quantity("kg", "[0, inf)"), Quantity("m", "(0, 10]")
-
-
 def test_dependent_bound_error_has_si_and_file_units() -> None:
     message = r"^Segment.tip_bore must be in \[0, 0.012\) m, its outer diameter; got 0.013"
     with pytest.raises(OutOfBounds, match=message) as error:

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -17,13 +16,12 @@ from cuefem.results.uncertainty import (
 )
 from cuefem.results.verdict import NoVerdict
 from cuefem.scene.solved_scene import SolvedScene
-
-MESHES = Path(__file__).parents[2] / "meshes"
+from studies.strokes import cue
 
 
 def test_squirt_changes_surface_restitution_is_one_sided() -> None:
     """Surface restitution 0.95 instead of 1 increases squirt by 4 %; two shafts with one tip share this error."""
-    scene = cf.usual_scene(cf.load(MESHES / "pool_maple.toml"))
+    scene = cf.usual_scene(cue("pool_maple"))
     own = float(cf.strike(scene).squirt)
     lossy = with_parameters(scene, {"leather.surface_restitution": 0.95})
     inputs = {key: abs(change) for key, change in squirt_changes(SolvedScene(scene), own).of("squirt").items()}
@@ -38,7 +36,7 @@ def test_squirt_changes_surface_restitution_is_one_sided() -> None:
 @pytest.mark.heavy
 def test_friction_is_an_input_of_late_slip_alone() -> None:
     """At 5 m/s and b/R 0.45 friction changes squirt by about 10 %, at 2 m/s and b/R 0.3 by less than 0.1 %."""
-    scene = cf.usual_scene(cf.load(MESHES / "pool_maple.toml"))
+    scene = cf.usual_scene(cue("pool_maple"))
     shares = [
         cf.verdict(with_parameters(scene, {"speed": speed, "offset": offset}), {}).inputs["friction"]
         for speed, offset in ((2.0, 0.3), (5.0, 0.45))
@@ -50,7 +48,7 @@ def test_friction_is_an_input_of_late_slip_alone() -> None:
 @pytest.mark.heavy
 def test_squirt_changes_miscue_on_one_side_takes_the_other() -> None:
     """At b/R 0.57 a tip with less friction slips off: its squirt, which hardly depends on the cue, does not count."""
-    scene = with_parameters(cf.usual_scene(cf.load(MESHES / "pool_maple.toml")), {"offset": 0.57})
+    scene = with_parameters(cf.usual_scene(cue("pool_maple")), {"offset": 0.57})
     own = float(cf.strike(scene).squirt)
     spread = PARAMETERS["friction"].spread_in(scene)
     assert isinstance(spread, float)
@@ -71,7 +69,7 @@ def test_squirt_changes_miscue_on_one_side_takes_the_other() -> None:
 @pytest.mark.heavy
 def test_input_beyond_the_range_of_the_tip_is_named_by_report_and_comparison() -> None:
     """At 19 m/s softer leather is indented beyond its range: both say so of it, by one rule."""
-    scene = with_parameters(cf.usual_scene(cf.load(MESHES / "pool_maple.toml")), {"offset": 0.2, "speed": 19.0})
+    scene = with_parameters(cf.usual_scene(cue("pool_maple")), {"offset": 0.2, "speed": 19.0})
     verdict = cf.verdict(scene, {})
     assert "leather" in verdict.miscues
     other = with_parameters(scene, {"tip diameter": 12e-3})

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from studies.strokes import cue as reference_cue
 
 SCENES = Path(__file__).parents[2] / "studies" / "scenes"
 NAMES = ("break_cue", "carom", "clay_on_shaft", "kim", "pool_low_deflection", "snooker")
@@ -19,20 +20,13 @@ def rows() -> dict[str, list[str]]:
     return {row[0][1:].partition("]")[0]: row[1:] for row in cells}
 
 
-def scene(name: str) -> cf.Scene:
-    loaded = cf.load(SCENES / f"{name}.toml")
-    assert isinstance(loaded, cf.Scene)
-    return loaded
-
-
 def test_ready_scenes_are_all_listed() -> None:
     assert tuple(sorted(path.stem for path in SCENES.glob("*.toml"))) == tuple(sorted(rows())) == NAMES
 
 
 def test_kim_mesh_has_published_dimensions() -> None:
     """[Kim] sec. 4: radius 6 to 10.5 mm over 0.70 m, 120 g, a cue of 540 g; E 12.6 GPa, G = E/15."""
-    cue = cf.load(SCENES.parents[1] / "meshes" / "kim.toml")
-    assert isinstance(cue, cf.Cue)
+    cue = reference_cue("kim")
     (cone,) = cue.segments
     assert cue.shaft_mass == pytest.approx(0.120, rel=1e-12)
     assert cue.mass == pytest.approx(0.540, rel=1e-12)
@@ -45,15 +39,14 @@ def test_readme_of_meshes_states_computed_squirts() -> None:
     stated = re.findall(r"([\d.]+)° \((\w+)\)", text.partition("Squirt at b/R 0.3 is then ")[2].partition(".\n")[0])
     assert len(stated) == 5
     for squirt, name in stated:
-        cue = cf.load(SCENES.parents[1] / "meshes" / f"{name}.toml")
-        assert isinstance(cue, cf.Cue)
-        assert f"{math.degrees(cf.strike(cf.usual_scene(cue)).squirt):.2f}" == squirt
+        assert f"{math.degrees(cf.strike(cf.usual_scene(reference_cue(name))).squirt):.2f}" == squirt
 
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", NAMES)
 def test_ready_scene_equals_its_readme(name: str) -> None:
-    reference, outcome = scene(name), cf.strike(scene(name), rtol=1e-3)
+    reference = cf.load_scene(SCENES / f"{name}.toml")
+    outcome = cf.strike(reference, rtol=1e-3)
     _, ball, offset, squirt, effects = rows()[name]
     assert ball == f"{2e3 * reference.ball.radius:g} mm, {1e3 * reference.ball.mass:g} g"
     assert float(offset) == reference.stroke.offset
