@@ -258,7 +258,7 @@ def _default_stroke(game: str, scene: Scene, given: Collection[str]) -> list[Ass
     """Assumptions for ball, tip and stroke of a cue alone."""
     known, butt = GAMES.get(game), ""
     if known and scene.shaft.body_mass:
-        length, diameter = (with_unit(size, "m") for size in (known.cue_length, known.butt_diameter))
+        length, diameter = (with_unit(size, "m", 6) for size in (known.cue_length, known.butt_diameter))
         butt = f", butt to {length}, {diameter} wide, for axial waves"
     stroke = [] if "game" in given else [Assumption.on("game", f"default stroke of {game}{butt}")]
     return [*stroke, *_stroke({}, game, scene, given)]
