@@ -172,28 +172,12 @@ def written(path: Path) -> str:
     return page_text(text) + drawing_text(text) if path.suffix == ".html" else text
 
 
+STUDIES = (sweep, scatter, optimum, optimum_of_woods, trade_off)
+CUES = (comparison, shop, filled, like, estimate, convert, parts, clamped)
 HEAVY = [pytest.param(each, marks=pytest.mark.heavy) for each in (beside, surfaces)]
 
 
-@pytest.mark.parametrize(
-    "prepare",
-    [
-        sweep,
-        scatter,
-        optimum,
-        optimum_of_woods,
-        trade_off,
-        comparison,
-        shop,
-        filled,
-        like,
-        estimate,
-        convert,
-        parts,
-        clamped,
-        *HEAVY,
-    ],
-)
+@pytest.mark.parametrize("prepare", [*STUDIES, *CUES, *HEAVY])
 def test_written_files_equal_golden_file(
     prepare: Callable[[Path], list[list[object]]],
     tmp_path: Path,

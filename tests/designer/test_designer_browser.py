@@ -22,7 +22,6 @@ from tests.helpers.designer_browser import (
     open_browser,
     pick_option,
     resident_memory,
-    run_designer,
     type_value,
     wait_until_idle,
 )
@@ -43,7 +42,7 @@ def browser() -> Iterator[Any]:
 
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    with run_designer(tmp_path_factory.mktemp("designer")) as url:
+    with designer_process(tmp_path_factory.mktemp("designer")) as (url, _):
         yield url
 
 

@@ -1,6 +1,5 @@
 """Invalid studies: calls and files, one for each `raise`; their messages are stored in tests/golden (bad input)."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,9 +9,8 @@ import cuefem as cf
 from cuefem.designs import Levels, Normal, Response, Sample, Span, Study, Vary
 from cuefem.designs.optimum import Limit, Problem
 from cuefem.designs.scatter import Scatter
-from cuefem.designs.search import optimum
 from tests.helpers.cues import low_deflection, scene
-from tests.helpers.invalid_input import assert_calls_refused, assert_refused, messages_of, rejected, stored_rows
+from tests.helpers.invalid_input import assert_calls_refused, assert_refused, rejected, stored_rows
 from tests.helpers.sweeps import OPTIMUM, SCATTER, STRIKES, STUDY, write_study
 
 AT = cf.Resolution(1, 4, 2)
@@ -45,23 +43,11 @@ def varying(path: str, *values: object, response: str = "mass", base: cf.Scene =
 
 PAIR = {("E", "rho"): 0.5}
 CONTRADICTING = {("E", "rho"): 0.9, ("rho", "time"): 0.9, ("E", "time"): -0.9}
-RUNS: dict[str, Callable[[], object]] = {
-    "scatter of miscues": lambda: cf.study(scattered(vary=(TIME,), count=2, response="squirt(0.9)")),
-    "front of one response": lambda: cf.study(varying("stroke.speed", 1.0, 2.0)).save("none.csv", front=True),
-    "text as output": lambda: cf.study(varying("stroke.speed", 1.0, 2.0)).save("none.docx"),
-    "best of a tolerance analysis": lambda: cf.study(scattered(vary=(TIME,), count=2)).save("none.toml"),
-    "unreachable limit": lambda: optimum(STIFF, rounds=1),
-    "unreachable target": lambda: optimum(replace(PROBLEM, target=0.01), rounds=1),
-    "miscue at every design": lambda: optimum(MISCUE, rounds=1),
-}
 
 
-def test_study_invalid_call_raises(request: pytest.FixtureRequest) -> None:
-    assert_calls_refused("designs", globals() | {"Sample": Sample}, request)
-
-
-def test_study_without_answer_raises(request: pytest.FixtureRequest) -> None:
-    assert_refused("study_runs", messages_of(RUNS), request)
+@pytest.mark.parametrize("table", ["designs", "study_runs"])
+def test_study_invalid_call_raises(table: str, request: pytest.FixtureRequest) -> None:
+    assert_calls_refused(table, globals() | {"Sample": Sample}, request)
 
 
 STUDIES = {"study": STUDY, "strikes": STRIKES, "scatter": SCATTER, "optimum": OPTIMUM}

@@ -21,9 +21,9 @@ from tests.helpers.invalid_input import assert_calls_refused, assert_refused, st
 from tests.helpers.surfaces import revolve, two_bodies, write_surface
 
 
-def rejection(path: Path, **options: str) -> str:
+def rejection(path: Path) -> str:
     with pytest.raises(InputError) as caught:
-        cf.load(path, **options)
+        cf.load(path)
     text = str(caught.value)
     assert text.startswith(f"{path}: ")
     assert len(text.splitlines()) == 1
@@ -45,11 +45,6 @@ def test_load_invalid_content_is_rejected(tmp_path: Path, request: pytest.Fixtur
         messages[row] = rejection(path)
         assert call("modes", path)[:2] == (2, "")
     assert_refused("files", messages, request)
-
-
-def test_load_refuses_an_option_that_it_does_not_have() -> None:
-    with pytest.raises(TypeError, match="a file is loaded with material, length_unit, front"):
-        cf.load("plain maple", wood="ash")
 
 
 BAR = revolve([(0, 0), *((x, 0.006) for x in np.linspace(0, 0.7, 30)), (0.7, 0)], 16)
@@ -121,37 +116,6 @@ def open_store(path: Path) -> None:
         pass
 
 
-@pytest.mark.parametrize("open_file", [cf.load, lambda path: cf.save(KIM, path), open_store])
-def test_path_with_null_character_is_rejected(open_file: Callable[[Path], object]) -> None:
-    """In words that do not depend on the version of Python."""
-    with pytest.raises(InputError, match=r"^a\\x00.toml: must be a path without null characters$"):
-        open_file(Path("a\0.toml"))
-
-
-OPTIONS: dict[str, dict[str, str]] = {
-    "none.toml": {},
-    "none.stl": {},
-    "folder.toml": {},
-    "cue.vtu": {},
-    "shaft.xlsx": {},
-    "shaft.txt": {},
-    "shaft.stl in kg": {"length_unit": "kg"},
-    "shaft.stl in 1/2 in": {"length_unit": "1/2 in"},
-    "shaft.stl of maple": {"material": "hard mapel"},
-    "shaft.csv in mm": {"length_unit": "mm"},
-}
-
-
-def test_load_missing_file_or_foreign_option_is_rejected(tmp_path: Path, request: pytest.FixtureRequest) -> None:
-    (tmp_path / "folder.toml").mkdir()
-    write_surface(tmp_path / "shaft.stl", POINTS, FACES)
-    for name in ("shaft.xlsx", "shaft.txt"):
-        (tmp_path / name).write_bytes(b"PK\x03\x04")
-    (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
-    messages = {row: rejection(tmp_path / row.split()[0], **options) for row, options in OPTIONS.items()}
-    assert_refused("file_options", messages, request)
-
-
 PIECE = '[[segments]]\nlength = "{}"\ntip_diameter = "{}"\nbutt_diameter = "21 mm"\nmaterial = "hard maple"\n'
 LARGE = {
     "long": PIECE.format("1e9 m", "12 mm"),
@@ -185,6 +149,11 @@ def test_call_on_another_kind_or_size_is_rejected(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> None:
     (tmp_path / "studies").symlink_to(Path(__file__).parents[2] / "studies")
+    (tmp_path / "folder.toml").mkdir()
+    write_surface(tmp_path / "shaft.stl", POINTS, FACES)
+    for name in ("shaft.xlsx", "shaft.txt"):
+        (tmp_path / name).write_bytes(b"PK\x03\x04")
+    (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
     cf.save(LUMPED, tmp_path / "lumped.toml")
     monkeypatch.chdir(tmp_path)
     assert_calls_refused("file_calls", globals() | {"replace": replace, "parse_number": parse_number}, request)

@@ -39,15 +39,11 @@ def open_browser() -> Iterator[Any]:
 
 
 @contextmanager
-def run_designer(folder: Path) -> Iterator[str]:
-    """The address of a designer that runs in a folder; it must print nothing on stderr and write no file there."""
-    with designer_process(folder) as (address, _):
-        yield address
-
-
-@contextmanager
 def designer_process(folder: Path) -> Iterator[tuple[str, int]]:
-    """The address of a designer as `run_designer`, and the number of its process."""
+    """The address of a designer that runs in a folder, and the number of its process.
+
+    It must print nothing on stderr and write no file there.
+    """
     command = [sys.executable, "-W", "error", "-c", COMMAND, "designer", "--no-open", "--port", "0"]
     errors = folder / "stderr"
     with errors.open("w") as err:

@@ -29,11 +29,6 @@ def stored_rows(table: str) -> list[str]:
     return [line.partition(": ")[0] for line in lines]
 
 
-def messages_of(calls: Mapping[str, Callable[[], object]]) -> dict[str, str]:
-    """What each call raises."""
-    return {row: raised(action) for row, action in calls.items()}
-
-
 def assert_calls_refused(table: str, names: dict[str, Any], request: pytest.FixtureRequest) -> None:
     """As `assert_refused`, of a table whose rows are calls in Python, with the package's names and a test file's."""
     names = {name: getattr(cuefem, name) for name in cuefem.__all__} | names

@@ -75,21 +75,9 @@ OPTIMUM += vary('"cue.segments[0].tip_bore"', 'name = "bore"', 'low = "1 mm"', '
 OPTIMUM += vary('"cue.segments[0].tip_diameter"', 'name = "tip"', 'low = "10 mm"', 'high = "13 mm"')
 
 # Two bare responses on a coarse mesh.
-GRID = """
-scene = "scene.toml"
-responses = ["end_mass", "mass"]
-[resolution]
-elements = 1
-order = 8
-modes = 4
-[[vary]]
-name = "bore"
-path = "cue.segments[0].tip_bore"
-values = ["0 mm", "1 mm", "2 mm", "3 mm"]
-[[vary]]
-path = "cue.segments[0].tip_diameter"
-values = ["12 mm", "12.5 mm"]
-"""
+GRID = 'scene = "scene.toml"\nresponses = ["end_mass", "mass"]\n' + resolution(8, 4)
+GRID += vary('"cue.segments[0].tip_bore"', 'name = "bore"', 'values = ["0 mm", "1 mm", "2 mm", "3 mm"]')
+GRID += vary('"cue.segments[0].tip_diameter"', 'values = ["12 mm", "12.5 mm"]')
 
 
 def write_study(folder: Path, study: str = STUDY, scene: str = SCENE, name: str = "study.toml") -> Path:

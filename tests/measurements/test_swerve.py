@@ -20,17 +20,12 @@ from tests.helpers.measured_cues import SCENE, measured_cue
 STEP = 1e-4  # s
 
 
-def integrated(
-    squirt: float, offset: float, *, elevation: float, speed: float, distance: float, friction: float
-) -> float:
-    """By small steps of Coulomb friction against the slip, whose direction is computed anew in each."""
-    sine, cosine = math.sin(elevation), math.cos(elevation)
-    velocity = speed * np.array([cosine * math.cos(squirt), math.sin(squirt)])
-    slip = velocity + np.array([0.0, 2.5 * speed * sine * math.sin(math.asin(offset) - squirt)])
-    position, pressed = (
-        np.zeros(2),
-        speed * sine * math.cos(squirt),
-    )  # the impulse that stops the downward motion, over M
+def rolled_out(velocity: np.ndarray, slip: np.ndarray, *, pressed: float, distance: float, friction: float) -> float:
+    """The angle of a ball at a distance, by small steps of Coulomb friction against the slip, anew in each.
+
+    pressed: the impulse that stops a downward motion at first, over M.
+    """
+    position = np.zeros(2)
     while True:
         size = float(np.hypot(*slip))
         change = min(friction * pressed, 2 / 7 * size) * slip / max(size, 1e-300)
@@ -41,6 +36,14 @@ def integrated(
             return math.atan2(position[1] + mean[1] * (distance - position[0]) / mean[0], distance)
         position = position + mean * STEP
         velocity, pressed = after, GRAVITY * STEP
+
+
+def integrated(squirt: float, offset: float, *, elevation: float, speed: float, **path: float) -> float:
+    """Of a stroke with a raised cue."""
+    sine, cosine = math.sin(elevation), math.cos(elevation)
+    velocity = speed * np.array([cosine * math.cos(squirt), math.sin(squirt)])
+    slip = velocity + np.array([0.0, 2.5 * speed * sine * math.sin(math.asin(offset) - squirt)])
+    return rolled_out(velocity, slip, pressed=speed * sine * math.cos(squirt), **path)
 
 
 @pytest.mark.heavy
@@ -88,27 +91,10 @@ def test_closed_form_equals_a_raised_strike(degrees: float, speed: float, limit:
         velocity = np.array([ahead, -right])
         slip = velocity + radius * np.array([spin_right, spin_ahead])
         for distance in (0.7, 1.2):
-            path = {
-                "elevation": elevation,
-                "speed": float(plain.ball_speed),
-                "distance": distance,
-                "friction": friction,
-            }
-            closed = reading_angle(float(plain.squirt), offset, **path)
-            assert math.degrees(abs(closed - _slid(velocity, slip, distance, friction))) < limit
-
-
-def _slid(velocity: np.ndarray, slip: np.ndarray, distance: float, friction: float) -> float:
-    """The angle of a ball that slides from a velocity and a slip on, and then rolls."""
-    size = float(np.hypot(*slip))
-    force = friction * GRAVITY * slip / size
-    until = 2 * size / (7 * friction * GRAVITY)
-    end = velocity * until - force * until**2 / 2
-    if end[0] < distance:
-        rolling = velocity - 2 / 7 * slip
-        return math.atan2(end[1] + rolling[1] / rolling[0] * (distance - end[0]), distance)
-    time = 2 * distance / (velocity[0] + math.sqrt(velocity[0] ** 2 - 2 * force[0] * distance))
-    return math.atan2(velocity[1] * time - force[1] * time**2 / 2, distance)
+            path = {"distance": distance, "friction": friction}
+            speed_of_ball = float(plain.ball_speed)
+            closed = reading_angle(float(plain.squirt), offset, elevation=elevation, speed=speed_of_ball, **path)
+            assert math.degrees(abs(closed - rolled_out(velocity, slip, pressed=0.0, **path))) < limit
 
 
 SQUIRT, OFFSET = math.radians(2.2), 0.375
