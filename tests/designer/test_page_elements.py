@@ -6,6 +6,7 @@ import asyncio
 import itertools
 import re
 from collections.abc import Awaitable, Callable, Iterator
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,6 +16,7 @@ import pytest
 pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
 from nicegui import Client, core, ui
 
+from cuefem.analysis.design_changes import ChangedDesign, DesignChanges
 from cuefem.cue import Array
 from cuefem.designer.controls import DRILLED, LEATHER_BEGINS
 from cuefem.designer.file_editor import FileEditor
@@ -22,6 +24,7 @@ from cuefem.designer.knob_row import KnobRow
 from cuefem.designer.page import Page
 from cuefem.designer.session import FILE, NOTHING, OPENED
 from cuefem.designer.state import reference_design
+from cuefem.designer.tabs import changes_panel
 from cuefem.scene import Scene
 from tests.test_golden_files import assert_golden, drawing_text, page_text
 
@@ -98,7 +101,12 @@ async def compared(tab: str) -> Page:
 async def of_results() -> str:
     """The elements of a page that compares two designs."""
     with Client(ui.page("/"), request=None) as client:
-        await compared("Numbers")
+        page = await compared("Numbers")
+        row = ChangedDesign("bore + thin", {}, 0.01, 300.0, 0.1, 90.0, -0.1, -0.06, -1e-3, 2.0, 0.02, "worthwhile")
+        rows = [row, replace(row, change="wider", squirt_change=0.1, verdict="more squirt")]
+        base = {"squirt": 0.011, "tip_stiffness": 319.0, "shaft_mass": 0.101, "frequency": 88.0}
+        page.session.results.own["changes"] = DesignChanges(KIM.scene, 0.3, "slip", base, rows, together=rows[:1])
+        changes_panel(page.session, lambda values: None)
         return "\n".join(described(client)) + "\n"
 
 
@@ -272,7 +280,7 @@ STEPS: dict[str, Step] = {
 async def of_steps() -> str:
     """What each step of a user changes on the page."""
     clock, lines = itertools.count(step=0.8), []
-    with Client(ui.page("/"), request=None), pytest.MonkeyPatch.context() as patch:
+    with Client(ui.page("/"), request=None) as client, pytest.MonkeyPatch.context() as patch:
         patch.setattr("cuefem.designer.session.time", SimpleNamespace(monotonic=clock.__next__))
         patch.setattr(FileEditor, "set_accessible_name", lambda self: None)
         page = opened()
@@ -283,6 +291,11 @@ async def of_steps() -> str:
             now = shown(page)
             lines += [f"- {words}", *(f"{part}: {text}" for part, text in now.items() if text != before[part])]
             before = now
+        page.session.results.own["verdict"] = SimpleNamespace(inputs={"speed": 0.01, "friction": 0.2, "E": 0.1})
+        page.screen.fold.value = True
+        await asyncio.sleep(0.001)  # until the assumptions are unfolded
+        unfolded = "\n".join(described(client)).partition("div assumption")[2]
+        lines += re.findall(r"(?<=data-knob': ')\w+|(?<=soft \{\} ).* ±.*", unfolded)
     return "\n".join(lines) + "\n"
 
 
