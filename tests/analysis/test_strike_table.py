@@ -40,12 +40,12 @@ def struck(speed: float, offset: float) -> cf.Outcome:
 
 
 def test_strike_table_equals_golden_file(table: StrikeTable, request: pytest.FixtureRequest) -> None:
-    """Its lines, its numbers, its text, and the points of its charts."""
+    """Its lines, its numbers, its text, also at a wide range of speeds, and the points of its charts."""
     page = table.to_html()
     lines = [json.dumps({key: value}, default=list) for key, value in table.to_dict().items()]
-    assert_golden(
-        "strike_table.txt", rounded("\n".join([*lines, str(table), page_text(page), drawing_text(page)])), request
-    )
+    wide = replace(table, speed=tuple(10 * (speed - 0.99) for speed in table.speed))
+    texts = [*lines, str(table), str(wide), page_text(page), drawing_text(page)]
+    assert_golden("strike_table.txt", rounded("\n".join(texts)), request)
 
 
 def test_table_equals_strikes_at_its_nodes_and_their_mirror_images(table: StrikeTable) -> None:

@@ -10,6 +10,7 @@ import cuefem as cf
 from cuefem.analysis.design_changes import (
     ChangedDesign,
     DesignChanges,
+    _verdict,
     design_changes,
 )
 from cuefem.cue.materials import material
@@ -53,16 +54,20 @@ def test_design_changes_rows_equal_strikes_of_changed_cues(computed: tuple[cf.Sc
 
 def test_table_of_changes_equals_golden_file(request: pytest.FixtureRequest) -> None:
     """Made-up changes with each verdict, small and large."""
+    sizes = (
+        (-0.2, -0.051),
+        (-0.1, 0.0949),
+        (-0.021, -0.049),
+        (-0.019, 0.0),
+        (0.0, -0.095),
+        (0.011, 0.0),
+        (0.123, 0.0004),
+    )
     rows = [
-        ChangedDesign(f"change {i}", {}, 0.01, 300.0, 0.1, 90.0, squirt, stiffness, 1e-3 * i, -0.04 * i, 0.02, verdict)
-        for i, (squirt, stiffness, verdict) in enumerate(
-            [
-                (-0.2, -0.06, "worthwhile, costs stiffness"),
-                (-0.1, 0.0949, "worthwhile"),
-                (0.0, -0.095, "within uncertainty"),
-                (0.123, 0.0004, "more squirt"),
-            ]
+        ChangedDesign(
+            f"change {i}", {}, 0.01, 300.0, 0.1, 90.0, *size, 1e-3 * i, -0.04 * i, 0.01, _verdict(*size, 0.01)
         )
+        for i, size in enumerate(sizes)
     ]
     base = {"squirt": 0.02, "tip_stiffness": 300.0, "shaft_mass": 0.1, "frequency": 90.0}
     made = DesignChanges(scene_of("kim"), 0.3, "slip", base, rows, ("friction",))

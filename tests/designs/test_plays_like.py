@@ -1,13 +1,14 @@
 """The smallest change to the squirt of another cue: found rows are strikes within the limits, on random shafts."""
 
+import math
 import random
 
 import pytest
 
 import cuefem as cf
-from cuefem.analysis.design_changes import Trial
-from cuefem.analysis.plays_like import SAME, PlaysLike
-from cuefem.analysis.shop_changes import Limits, dimensions_of
+from cuefem.analysis.design_changes import Trial, are_compatible, joined
+from cuefem.analysis.plays_like import SAME, PlaysLike, _ChangedShaft, _ShaftSearch
+from cuefem.analysis.shop_changes import DesignChange, Dimension, Limits, dimensions_of
 from tests.designs.test_changes_together import LIMITS, assert_within, random_scene
 
 MAPLE = cf.Cue((cf.Segment(0.7, 0.01275, 0.021, cf.material("hard maple")),), body_mass=0.43)
@@ -51,6 +52,29 @@ def test_shaft_that_plays_alike_needs_no_change_and_a_far_one_has_a_nearest() ->
     (nearest,) = far.changes
     assert far.target < nearest.squirt < far.unmodified["squirt"]
     assert "no change within the limits reaches the squirt of the other cue" in str(far)
+
+
+def test_three_changes_at_most_are_combined_from_the_two_nearest() -> None:
+    """Made-up dimensions a to d, which reduce the logarithm of squirt by 0.1 to 0.4, that of the other cue by 2."""
+
+    class Reducing(_ShaftSearch):
+        def __init__(self) -> None:
+            self.own_gap, self.tried = 2.0, list[str]()
+
+        def end(self, base: _ChangedShaft | None, dimension: Dimension) -> _ChangedShaft | None:
+            group = [*([base.change] if base else []), dimension.change(0.0)]
+            if not are_compatible(group):
+                return None
+            change = joined(group)
+            self.tried.append(change.label)
+            return _ChangedShaft(change, {}, 2.0 - math.fsum(change.values.values()))
+
+    names = ("ferrule material", *"abcd")  # another material is a base, too, since it has no size
+    changes = [DesignChange(name, {name: 0.1 * k}, (), "") for k, name in enumerate(names)]
+    search = Reducing()
+    (nearest,) = search.run([Dimension(lambda _, change=change: change, 0.0, 0.0, 1.0) for change in changes], list)
+    assert {*nearest.change.values} == {"b", "c", "d"}
+    assert {label.partition(" + ")[0] for label in search.tried if "+" in label} == {"ferrule material", "c", "d"}
 
 
 @pytest.mark.parametrize("seed", [pytest.param(k, marks=pytest.mark.nightly) for k in range(20)])

@@ -173,6 +173,7 @@ DAMAGED = [
 def test_store_altered_raises_and_is_unchanged(tmp_path: Path, statement: str, message: str) -> None:
     study, store = write_study(tmp_path, GRID), tmp_path / "study.sqlite"
     computed_rows(study, store)
+    assert store.read_bytes()[68:72] == b"CuFf"  # SQLite's application_id, by which later versions know a store
     alter_store(store, statement)
     assert_unchanged(tmp_path, message, "study", study)
 

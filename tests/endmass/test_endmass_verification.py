@@ -90,6 +90,14 @@ def test_force_end_mass_equals_quadrature(T: float) -> None:
     np.testing.assert_allclose(force(tip, scene(kim(), T)), 2 * T / math.pi / velocity_integral, rtol=1e-11)
 
 
+def test_force_end_mass_is_continuous_at_resonance() -> None:
+    """A half-sine of half a period of an undamped mode: its integral is the limit of those beside it."""
+    tip = few_modes()
+    T = float(np.pi / tip.omega[3])
+    at, beside = (force(tip, scene(kim(), T * factor)) for factor in (1.0, 1 + 1e-7))
+    assert at == pytest.approx(beside, rel=1e-6)
+
+
 # --- known values ---
 
 

@@ -58,7 +58,7 @@ def test_same_shaft_keeps_its_measured_squirt() -> None:
 
 
 def test_calibration_without_information_equals_the_model() -> None:
-    made = calibration(error=1.7)  # removes 1.1 % of the prior's variance
+    made = calibration(error=1.745)  # removes 1.05 % of the prior's variance
     unshared = replace(made, drawn={}, covariance=((made.covariance[-1][-1],),))
     found = unshared.squirt(NEW)
     assert found.error == pytest.approx(found.uncalibrated_error, rel=0.01)
