@@ -28,6 +28,8 @@ import cuefem  # noqa: E402
 from cuefem.beam import blas_threads  # noqa: E402
 from cuefem.contact.kernel.library import library  # noqa: E402
 
+pytest.register_assert_rewrite("tests.helpers")  # so that their failures show values, as those of tests do
+
 settings.register_profile("cuefem", derandomize=True, deadline=None, database=None, print_blob=True)
 # `pytest --hypothesis-profile=nightly`: other examples in each run, ten times as many; a failing one prints its blob
 settings.register_profile(

@@ -75,7 +75,9 @@ def test_added_cue_effect_is_displayed_saved_and_varied(tmp_path: Path, monkeypa
     assert "Collar (position 30 mm, mass 4 g)" in " ".join(stdout_of("strike", tmp_path / "scene.toml").split())
     assert 'type = "Collar"' in (tmp_path / "scene.toml").read_text(encoding="utf-8")
     assert cf.load(tmp_path / "scene.toml").effects == scene.effects
-    assert cf.strike(scene, AT).squirt > 1.01 * cf.strike(bare, AT).squirt
+    as_mass = replace(bare, effects=(cf.PointMass(position=0.03, mass=4e-3),))
+    assert cf.strike(scene, AT).squirt == cf.strike(as_mass, AT).squirt > 1.01 * cf.strike(bare, AT).squirt
+    assert cf.cue_numbers(scene).values() == cf.cue_numbers(as_mass).values()
     (added,) = (one for one in variants(bare) if one.name == "Collar")
     assert (added.is_listed, added.scene) == (False, scene)
     study = Study(scene, (Vary(("effects[0].mass",), Levels((0.0, 4e-3))),), (Response.of("squirt"),))

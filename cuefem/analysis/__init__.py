@@ -65,8 +65,9 @@ class Question(NamedTuple):
     def answer(self) -> type[Analysis]:
         """The class of its answers, which its function is annotated to return."""
         function = self.function()
-        kind: type[Analysis] = function.__globals__[function.__annotations__["return"]]
-        return kind
+        kind = function.__annotations__["return"]  # a text, if the module postpones its annotations
+        answer: type[Analysis] = function.__globals__[kind] if isinstance(kind, str) else kind
+        return answer
 
 
 # By the key of its JSON, of its section on a page, and the name of its command; in the order of the report.

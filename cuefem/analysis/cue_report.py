@@ -7,8 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from cuefem.analysis import has_segments, report_sections
-from cuefem.analysis.natural_frequencies import natural_frequencies
+from cuefem.analysis import report_sections
 from cuefem.analysis.shop_changes import Limits
 from cuefem.analysis.squirt_curve import FINE_OFFSETS
 from cuefem.analysis.strike_models import regime_warning
@@ -40,7 +39,7 @@ class CueReport(Analysis):
     regime : str
         State of the contact, as `Outcome.regime`; "" without a contact.
     no_contact, no_squirt : str
-        Why only the natural frequencies are known; why there is no verdict.
+        Why only what needs no stroke is known, such as natural frequencies; why there is no verdict.
     other : tuple of str and Scene, optional
         Name and scene of a cue that its page shows beside this one: ``replace(report, other=(name, scene))``.
     """
@@ -63,6 +62,13 @@ class CueReport(Analysis):
         """The numbers of every section."""
         others = {name: getattr(self, name) for name in ("regime", "no_contact", "no_squirt")}
         return {key: answer.values() for key, answer in self._brief()} | {k: text for k, text in others.items() if text}
+
+    def to_dict(self) -> Record:
+        """The record, with the units of what is no quantity of the registry in any section."""
+        record = super().to_dict()
+        for _, answer in self._brief():
+            record["units"] |= answer.own_units
+        return record
 
     def tables(self) -> list[Table | str]:
         """The tables of every section, the warnings first."""
@@ -140,28 +146,29 @@ def report(
     Returns
     -------
     CueReport
-        Beyond the valid range of the force law or of the geometric stiffness it has the natural frequencies only, and
-        the reason as ``no_contact``; of a miscue no verdict, and the reason as ``no_squirt``.
+        Beyond the valid range of the force law or of the geometric stiffness it has only what needs no stroke, such as
+        the natural frequencies, and the reason as ``no_contact``; of a miscue no verdict, and the reason as
+        ``no_squirt``.
 
     Examples
     --------
     >>> import cuefem as cf
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
-    >>> list(cf.report(scene).sections)
-    ['verdict', 'squirt', 'numbers', 'modes', 'reduction', 'end_masses', 'tip']
+    >>> list(cf.report(scene).sections)[:4]
+    ['verdict', 'squirt', 'numbers', 'modes']
     """
     found: dict[str, Analysis] = {}
     lacking = ""
     check_scene("report scene", scene)
+    wanted = report_sections(scene, details=details)
     try:
         scene.contact_time  # noqa: B018
         design = SolvedDesign.of(scene, rtol)
         regime = design.strike().regime
     except (IndentationOutOfRange, SlopeOutOfRange) as error:
-        modes: dict[str, Analysis] = {"modes": natural_frequencies(scene)} if has_segments(scene) else {}
-        return CueReport(scene, modes, no_contact=str(error))
-    wanted = [*report_sections(scene, details=details).items()]
+        resting = {key: each for key, each in wanted.items() if not each.answer().has_stroke}
+        return CueReport(scene, {key: each.function()(scene) for key, each in resting.items()}, no_contact=str(error))
     calibrated: Record = {} if calibration is None else {"calibration": calibration}
     if calibration is not None:
         with suppress(NoVerdict):  # the section of the verdict says why
@@ -171,7 +178,7 @@ def report(
         "advice": calibrated | {"limits": limits},
         "squirt": {"offsets": FINE_OFFSETS} if details else {},
     }
-    for key, question in progress(wanted):
+    for key, question in progress([*wanted.items()]):
         answer = question.function()
         try:
             found[key] = answer(design, **arguments.get(key, {}))

@@ -28,4 +28,4 @@ def test_added_command_is_listed_completed_and_loaded_at_call(monkeypatch: pytes
 
 def test_unknown_command_suggests_nearest_name() -> None:
     assert_rejects("No such command 'endmass'; did you mean 'end-mass'? (`", "endmass", "scene.toml")
-    assert_rejects("No such command 'nonsense' (`", "nonsense", "scene.toml")
+    assert_rejects("No such command 'xyzzy' (`", "xyzzy", "scene.toml")

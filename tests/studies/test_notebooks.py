@@ -55,7 +55,7 @@ def test_notebook_prints_and_shows_stored_output(path: Path, monkeypatch: pytest
         assert printed.getvalue() == "".join(line for out in stored for line in out["text"])
         shown = ["".join(out["data"].get("text/html", "")) for out in cell["outputs"] if "data" in out]
         answers = [value._repr_html_()] if hasattr(value, "_repr_html_") else []
-        assert [words(text) for text in shown if text] == [*map(words, answers)]
+        assert [words(text) for text in shown if text] == [*map(words, answers)], "now .ci/notebooks.py stores others"
         figures = [out for out in cell["outputs"] if out["output_type"] == "display_data"]
         assert len(plt.get_fignums()) == len(figures)
     plt.close("all")
