@@ -23,11 +23,10 @@ class ImpulseSolution(NamedTuple):
     friction_states: list[str]
 
 
-def exact_impulse(scene: Scene, digits: int = 60) -> ImpulseSolution:
+def exact_impulse(scene: Scene) -> ImpulseSolution:
     """The stroke in decimal arithmetic: straight pieces of velocity, roots of lines and parabolas."""
     cue, ball, tip = scene.cue, scene.ball, scene.tip
-    with localcontext() as context:
-        context.prec = digits
+    with localcontext(prec=60):
         M = Decimal(ball.mass)
         x = {"along": M / Decimal(cue.mass), "across": M / Decimal(cue.end_mass), "coupling": M * Decimal(cue.coupling)}
         x |= {"b": Decimal(scene.stroke.offset), "nu": Decimal(ball.inertia)}

@@ -69,16 +69,11 @@ def test_instances_cover_every_effect() -> None:
     assert {name for name, kind in kinds.items() if fields(kind)} <= covered
 
 
-METALS = {"E": "12.6 GPa", "G": "840 MPa", "rho": "782 kg/m^3"}
-CONE = {"length": "700 mm", "tip_diameter": "12 mm", "butt_diameter": "21 mm", "tip_bore": "3 mm", "material": METALS}
-SCENE: dict[str, Any] = {
-    "game": "kim",
-    "cue": {"segments": [CONE], "body_mass": "420 g"},
-    "ball": {"mass": "210 g"},
-    "tip": {"contact_time": "1 ms"},
-    "stroke": {"offset": 0.3},
-    "effects": [{"type": "PointMass", "position": "0.1 m", "mass": "5 g"}],
-}
+SCENE = cf.Scene(
+    cf.Cue((cf.Segment(0.7, 0.012, 0.021, WOOD, tip_bore=0.003),), 0.42),
+    tip=cf.Tip(contact_time=1e-3),
+    effects=(cf.PointMass(position=0.1, mass=5e-3),),
+)
 TABLES = {
     "cue.segments[0].material": cf.Material,
     "cue.segments[0]": cf.Segment,
@@ -106,9 +101,11 @@ def in_a_file(mark: Quantity) -> Iterator[tuple[Any, str]]:
 @pytest.mark.parametrize("key", TABLES)
 def test_field_invalid_value_in_file_raises(tmp_path: Path, key: str) -> None:
     path, kind = tmp_path / "scene.toml", TABLES[key]
+    cf.save(SCENE, path)
+    stored = tomlkit.parse(path.read_text()).unwrap()
 
     def error_line(name: str, value: Any) -> str:
-        scene: Any = copy.deepcopy(SCENE)
+        scene: Any = copy.deepcopy(stored)
         table = scene
         for part in key.replace("[0]", ".0").split("."):
             table = table[int(part) if part.isdecimal() else part]
