@@ -16,6 +16,7 @@ from tests.helpers.cues import pool
 from tests.helpers.examples import examples
 
 VARIED = '[[vary]]\npath = "offset"\nvalues = [0.3]'
+FERRULED = ("--ferrule", "1 in melamine", "--body-mass", "15 oz")
 CSV = "x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n"
 
 
@@ -41,32 +42,23 @@ def test_shaft_mass_includes_tip_and_precedes_other_changes() -> None:
     assert not with_parameters(weighed, {"shaft material": "ash"}).shaft.shaft_mass_measured
 
 
+def weighed(folder: Path, *options: str) -> Path:
+    """A drawn shaft that was weighed when it was converted."""
+    csv, toml = folder / "my.csv", folder / "weighed.toml"
+    csv.write_text(CSV)
+    assert call("convert", csv, toml, "--shaft-mass", "112 g", *options)[0] == 0
+    return toml
+
+
 def test_shaft_mass_option_and_file_key_agree(tmp_path: Path) -> None:
-    (csv := tmp_path / "my.csv").write_text(CSV)
-    toml = tmp_path / "my.toml"
-    assert call("convert", csv, toml, "--shaft-mass", "112 g")[0] == 0
-    cue = cf.load(toml)
-    assert isinstance(cue, cf.Cue)
+    toml = weighed(tmp_path)
+    cue = cf.load_cue(toml)
     assert cue.shaft_mass_measured
     assert 0.111 < cue.shaft_mass < 0.112  # without the tip, which is not drawn
-    assert as_json("modes", csv, "--shaft-mass", "112 g")["scene"]["cue"]["shaft_mass"] == pytest.approx(
-        cue.shaft_mass, rel=1e-11
-    )
+    answer = as_json("modes", tmp_path / "my.csv", "--shaft-mass", "112 g")
+    assert answer["scene"]["cue"]["shaft_mass"] == pytest.approx(cue.shaft_mass, rel=1e-11)
     toml.write_text(toml.read_text().replace("shaft_mass_measured = true", f'shaft_mass = "{cue.shaft_mass!r} kg"'))
-    other = cf.load(toml)
-    assert isinstance(other, cf.Cue)
-    assert main_material(other).rho == pytest.approx(main_material(cue).rho, rel=1e-12)
-
-
-def weighed(folder: Path) -> Path:
-    """A shaft with a ferrule that was weighed when it was converted."""
-    (csv := folder / "my.csv").write_text(CSV)
-    toml = folder / "weighed.toml"
-    assert (
-        call("convert", csv, toml, "--shaft-mass", "112 g", "--ferrule", "1 in melamine", "--body-mass", "15 oz")[0]
-        == 0
-    )
-    return toml
+    assert main_material(cf.load_cue(toml)).rho == pytest.approx(main_material(cue).rho, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -75,28 +67,25 @@ def weighed(folder: Path) -> Path:
     ids=str,
 )
 def test_options_keep_the_density_of_a_weighed_shaft_at_every_door(options: dict[str, str], tmp_path: Path) -> None:
-    file = weighed(tmp_path)
-    before = cf.load(file)
-    assert isinstance(before, cf.Cue)
+    file = weighed(tmp_path, *FERRULED)
+    density = main_material(cf.load_cue(file)).rho
     given = [text for key, value in options.items() for text in (f"--{key.replace('_', '-')}", value)]
     assert call("convert", file, tmp_path / "converted.toml", *given)[0] == 0
     study = tmp_path / "study.toml"
     lines = [f'{key} = "{value}"' for key, value in options.items()]
     study.write_text("\n".join(['scene = "weighed.toml"', 'responses = ["squirt"]', *lines, VARIED]))
     doors = {
-        "convert": cf.load(tmp_path / "converted.toml"),
-        "strike": cf.Scene(cf.load(file, **options)),
-        "study": load_study(study).base,
+        "convert": cf.load_cue(tmp_path / "converted.toml"),
+        "strike": cf.load_cue(file, **options),
+        "study": load_study(study).base.shaft,
     }
-    for door, loaded in doors.items():
-        cue = loaded.shaft if isinstance(loaded, cf.Scene) else loaded
-        assert isinstance(cue, cf.Cue)
+    for door, cue in doors.items():
         assert cue.shaft_mass_measured, door
-        assert main_material(cue).rho == pytest.approx(main_material(before).rho, rel=1e-9), door
+        assert main_material(cue).rho == pytest.approx(density, rel=1e-9), door
 
 
 def test_report_says_what_options_replace_and_how_a_shaft_was_weighed(tmp_path: Path) -> None:
-    file, bore, ferrule = weighed(tmp_path), "8 mm wide, 127 mm deep", "15 mm abs"
+    file, bore, ferrule = weighed(tmp_path, *FERRULED), "8 mm wide, 127 mm deep", "15 mm abs"
 
     def notes(*options: str) -> list[str]:
         return [*as_json("strike", file, *options)["assumptions"]]
