@@ -22,7 +22,7 @@ from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, PivotLength
 from cuefem.measurements.recording import spectral_peaks
 from cuefem.measurements.shot import Shot
 from cuefem.parameters.scene_changes import with_parameters
-from cuefem.quantity.display_units import displayed_in
+from cuefem.quantity.display_units import METRIC, US, displayed_in
 from cuefem.quantity.fields import quantity_fields
 from cuefem.quantity.units import UNITS, unit_of
 from cuefem.results.computable_results import computable_results, listed_results
@@ -64,8 +64,8 @@ def results(folder: Path) -> list[object]:
 
 
 def units(folder: Path) -> list[object]:
-    """Every unit in SI units, and its dimension."""
-    return [(name, *unit_of(name)) for name in UNITS]
+    """Every unit in SI units, and its dimension; the units displayed, their numbers per SI unit, and their decimals."""
+    return [(name, *unit_of(name)) for name in UNITS] + [row for shown in (METRIC, US) for row in shown.items()]
 
 
 def games(folder: Path) -> list[object]:

@@ -72,11 +72,14 @@ def _list_sections(word: str, as_json: bool) -> None:
 
 def _open(chapter: str | None) -> None:
     """Write the page to a temporary file, and open it in a browser."""
-    with tempfile.NamedTemporaryFile(prefix="cuefem-guide-", suffix=".html", delete=False) as file:
-        path = Path(file.name)
-    path.write_text(page(), encoding="utf-8")
-    address = path.as_uri() + (f"#{chapter}" if chapter else "")
-    click.echo(f"opened {address}" if webbrowser.open(address) else f"no browser found; open this file in one: {path}")
+    with tempfile.NamedTemporaryFile(
+        "w", encoding="utf-8", prefix="cuefem-guide-", suffix=".html", delete=False
+    ) as file:
+        file.write(page())
+    address = Path(file.name).as_uri() + (f"#{chapter}" if chapter else "")
+    click.echo(
+        f"opened {address}" if webbrowser.open(address) else f"no browser found; open this file in one: {file.name}"
+    )
 
 
 def _print(texts: list[str]) -> None:

@@ -104,7 +104,13 @@ class Striker:
         if self.stiffness is not None:
             return TipLaw(self.stiffness, 1.0, self.restitution)
         assert self.contact_time is not None
-        return TipLaw.for_contact_time(1.0, self.restitution, mass=self.mass, speed=1.0, time=self.contact_time)
+        return TipLaw.for_contact_time(
+            1.0,
+            self.restitution,
+            mass=self.mass,
+            speed=1.0,  # any: a linear law has one contact time
+            time=self.contact_time,
+        )
 
     def wall_time(self, speed: float) -> float:
         """Contact time on a rigid wall, s, at ``speed``, m/s, on which only that of Hertz's law depends."""

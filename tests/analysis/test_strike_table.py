@@ -44,7 +44,7 @@ def test_strike_table_equals_golden_file(table: StrikeTable, request: pytest.Fix
     page = table.to_html()
     lines = [json.dumps({key: value}, default=list) for key, value in table.to_dict().items()]
     wide = replace(table, speed=tuple(10 * (speed - 0.99) for speed in table.speed))
-    texts = [*lines, str(table), str(wide), page_text(page), drawing_text(page)]
+    texts = [repr(table), *lines, str(table), str(wide), page_text(page), drawing_text(page)]
     assert_golden("strike_table.txt", rounded("\n".join(texts)), request)
 
 

@@ -72,7 +72,7 @@ def test_table_of_changes_equals_golden_file(request: pytest.FixtureRequest) -> 
     base = {"squirt": 0.02, "tip_stiffness": 300.0, "shaft_mass": 0.1, "frequency": 90.0}
     made = DesignChanges(scene_of("kim"), 0.3, "slip", base, rows, ("friction",))
     page = made.to_html()
-    assert_golden("design_changes.txt", f"{made}\n{page_text(page)}{drawing_text(page)}", request)
+    assert_golden("design_changes.txt", f"{made!r}\n{made}\n{page_text(page)}{drawing_text(page)}", request)
 
 
 @pytest.mark.heavy

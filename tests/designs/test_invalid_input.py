@@ -68,11 +68,12 @@ def test_study_invalid_file_raises(tmp_path: Path, request: pytest.FixtureReques
 def test_study_invalid_options_change_no_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> None:
-    """Errors before the run: a store that is none, options, a drawing and a scene instead of a study."""
+    """Errors before the run: a store that is none, options, a drawing, a scene and a stub instead of a study."""
     monkeypatch.chdir(tmp_path)
     for name, study in (("best", OPTIMUM), ("beside_text", STUDY), ("study", STUDY)):
         write_study(tmp_path, study, name=f"{name}.toml")
     Path("cue.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
+    Path("notes.toml").write_text('game = "pool"\n')
     Path("beside_text.sqlite").write_bytes(b"design,end_mass\n" * 100)
     messages = {row: rejected(tmp_path, *row.split()) for row in stored_rows("study_options")}
     assert_refused("study_options", messages, request)

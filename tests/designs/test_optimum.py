@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,11 +12,11 @@ import pytest
 import cuefem as cf
 from cuefem.analysis.comparison import compare_cues
 from cuefem.cue.materials import material
-from cuefem.designs import Response, Span, Vary, evaluate
+from cuefem.designs import Levels, Response, Span, Vary, evaluate
 from cuefem.designs.optimum import NOT_DISTINCT, Limit, Optimum, OptimumResult, Problem, Round
 from cuefem.designs.search import optimum
 from cuefem.designs.study_file import load_study
-from cuefem.designs.trade_off import TradeOffResult
+from cuefem.designs.trade_off import TradeOffResult, _Front
 from cuefem.results.uncertainty import RATIO_FLOOR
 from studies.pages import STUDIES
 from tests.helpers.command_line import stdout_of
@@ -54,6 +55,24 @@ LIMITS = (
     Limit(Response("frequency", 1), low=95.0),
 )
 PROBLEM = Problem(SCENE, (BORE, DEPTH, TIP, TAPER), SQUIRT, LIMITS, cf.Resolution(1, 6, 8))
+
+
+def test_change_is_the_root_mean_square_of_changes_over_their_ranges() -> None:
+    """From the base: its own bore, 1 for a factor, 0 for a shift; another material counts as one range."""
+    stiffer = Vary(("cue.segments[3].material.E",), Span(0.6, 1.6), "stiffer", factor=True)
+    heavier = Vary(("cue.body_mass",), Span(-0.02, 0.08), "heavier", shift=True)
+    wood = Vary(("cue.segments[3].material",), Levels(("hard maple", "ash")), "wood")
+    problem = replace(PROBLEM, vary=(BORE, stiffer, heavier, wood), limits=())
+    shares = np.array([problem.shares(problem.start)[0] + 0.1, 0.4 + 0.2, 0.2 + 0.4])
+    for name, square in ((problem.base_value(wood), 0.21), ("ash", 1.21)):
+        assert replace(problem, choice={3: name}).change(shares) == pytest.approx(np.sqrt(square / 4), rel=1e-12)
+
+
+def test_pieces_of_a_trade_off_are_relative_to_its_ends() -> None:
+    """Two responses, the second of which no design changes."""
+    front = _Front(PROBLEM, {WALL: True, STIFFNESS: True}, 1, lambda _: None)
+    designs = [SimpleNamespace(responses={"wall": wall, "tip_stiffness": 400.0}) for wall in (1.0, 2.0, 5.0)]
+    assert front.pieces(designs).tolist() == [[0.25, 0.0], [0.75, 0.0]]
 
 
 @cache
@@ -180,7 +199,7 @@ def test_designs_that_are_not_distinct_are_marked() -> None:
     assert NOT_DISTINCT in " ".join(str(result).split())
 
 
-@pytest.mark.parametrize("offset", [0.0, 0.3])
+@pytest.mark.parametrize("offset", [0.0, 5e-4, 0.3])
 def test_least_squirt_over_offsets_through_0_is_found(offset: float) -> None:
     """From the centre and from beside it: the size of squirt has a kink at 0, where SLSQP does not converge."""
     base = replace(SCENE, stroke=cf.Stroke(offset=offset))

@@ -12,7 +12,7 @@ from hypothesis.extra.numpy import arrays
 
 import cuefem as cf
 from cuefem.designs import Response
-from cuefem.designs.sweep import MAX_POINTS, SweepResult, SweepStatistics, sweep_charts
+from cuefem.designs.sweep import MAX_POINTS, SweepResult, SweepStatistics, _shown, sweep_charts
 from cuefem.files.defaults_report import Assumption
 from cuefem.results.uncertainty import RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.examples import examples
@@ -107,3 +107,4 @@ def test_chart_of_many_designs_shows_an_even_part() -> None:
         bore = np.random.default_rng(1).random(count)
         drawn = sweep_charts(table({"bore": bore}, np.stack([bore, 900 - bore], axis=1)))[0].points[0]
         assert (drawn[0], drawn[2].count("M")) == (said, MAX_POINTS)
+        assert _shown(np.arange(count))[0][[0, -1]].tolist() == [0, count - 1]

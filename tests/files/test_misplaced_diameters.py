@@ -42,3 +42,8 @@ def test_drawings_of_the_repository_are_accepted(path: Path) -> None:
     x = [float(end) for end in np.repeat(ends, 2)[1:-1]]
     d = [width for segment in segments for width in (segment.tip_diameter, segment.butt_diameter)]
     assert misplaced_rows(x, d, in_inches=False) == []
+
+
+def test_column_in_another_unit_is_no_list_of_slips() -> None:
+    """Fewer than half of the rows are as wide as a cue."""
+    assert misplaced_rows([0.0, 0.2, 0.4, 0.6, 0.8], [0.012, 0.013, 0.05, 0.05, 0.05], in_inches=False) == []

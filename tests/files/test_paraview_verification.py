@@ -28,6 +28,7 @@ def area_and_volume(points: np.ndarray, cells: dict[str, np.ndarray]) -> tuple[f
 
 def test_shaft_surface_is_closed_and_oriented_outwards() -> None:
     surface = shaft_surface(CUE)
+    assert np.diff(np.unique(surface.x)).max() <= 0.01
     _, volume = area_and_volume(surface.points, dict(surface.cells))
     frusta = [(0.025, 0.0125, 0.0128), (0.7, 0.012, 0.021)]
     prism = RING_POINTS / (2 * np.pi) * np.sin(2 * np.pi / RING_POINTS)  # area of the polygon over that of the circle

@@ -97,7 +97,9 @@ def test_guide_opens_prints_and_writes(has_browser: bool, tmp_path: Path, monkey
     assert page_file.read_text(encoding="utf-8") == (tmp_path / "guide.html").read_text(encoding="utf-8") == whole()
     printed = stdout_of("guide", "glossary", "--print")
     assert ("effective end mass" in printed, "Hutchinson" in printed) == (True, False)
+    assert stdout_of("guide", "telephone").startswith("1 section with 'telephone'; cuefem guide CHAPTER opens one:\n")
     section_list = stdout_of("guide", "ferrule")
+    assert re.match(r"\d\d sections with 'ferrule'; ", section_list)
     assert ("measure_your_shaft" in section_list, "impulse_solver" in section_list) == (True, False)
     listed = " ".join(stdout_of("guide", "--help").split())
     assert [name for name in CHAPTERS if name not in listed] == []
