@@ -13,6 +13,7 @@ import pytest
 import cuefem as cf
 from tests.helpers.command_line import call, stdout_of
 from tests.helpers.invalid_input import assert_refused, rejected, stored_rows
+from tests.test_golden_files import assert_golden, drawing_text, page_text, rounded
 
 PROFILE = "x (in),diameter (in)\n0,.505\n14,.520\n29,.845\n"
 SHOP = """[shop]
@@ -46,20 +47,20 @@ def drawing(tmp_path: Path) -> Path:
     return made
 
 
-def test_sheet_of_a_csv_has_shop_order_and_one_date(drawing: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_sheet_of_a_csv_equals_golden_files(
+    drawing: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> None:
+    """In both units; with the shop, the order and one date."""
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1795859200")
     page = drawing.with_name("0142.html")
     given = ("--customer", "A <i>Player</i>", "--serial", "0142")
     assert call("report", drawing, "--sheet", *given, "-o", page)[0] == 0
     text = page.read_text(encoding="utf-8")
-    said = texts_of(page)
-    assert re.findall(r"\d{4}-\d\d-\d\d", said) == ["2026-11-28"]
-    assert all(part in said for part in ("Cues <b>& Co.</b>", "12 Main Street", "A <i>Player</i>", "0142"))
+    assert_golden("sheet_us.txt", rounded(page_text(text) + drawing_text(text)), request)
     assert ("<b>& Co." in text, "<i>Player" in text, "data:image/svg+xml;base64," in text) == (False, False, True)
-    assert all(part in said for part in (".505", ".845", "Swerve: with the cue raised by 3°", "off line after 4 ft"))
-    call("report", drawing, "--sheet", *given, "--date", "Monday", "-o", page)
-    assert "Monday" in page.read_text(encoding="utf-8")
-    assert "2026-11-28" not in page.read_text(encoding="utf-8")
+    assert call("report", drawing, "--sheet", "--date", "Monday", "--units", "metric", "-o", page)[0] == 0
+    text = page.read_text(encoding="utf-8")
+    assert_golden("sheet_metric.txt", rounded(page_text(text) + drawing_text(text)), request)
 
 
 def test_order_of_a_cue_is_on_its_sheet_and_in_no_record(drawing: Path) -> None:
