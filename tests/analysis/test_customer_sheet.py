@@ -5,7 +5,6 @@ import json
 import re
 import shutil
 import subprocess
-import tomllib
 from pathlib import Path
 
 import pytest
@@ -75,16 +74,6 @@ def test_order_of_a_cue_is_on_its_sheet_and_in_no_record(drawing: Path) -> None:
     copied = drawing.with_name("copied.toml")
     assert call("convert", cue, copied, "--body-mass", "16 oz")[0] == 0
     assert copied.read_text().endswith(cue.read_text().partition("[order]")[2])
-
-
-@pytest.mark.heavy
-def test_taken_change_keeps_order_and_accuracy(drawing: Path) -> None:
-    scene, taken = drawing.with_suffix(".toml"), drawing.with_name("taken.toml")
-    kept = {"accuracy": {"rtol": 0.01}, "order": {"customer": "B. Player"}}
-    scene.write_text('cue = "pro.csv"\n[accuracy]\nrtol = 0.01\n[order]\ncustomer = "B. Player"\n')
-    assert call("improve", scene, "--take", "1", "-o", taken)[0] == 0
-    read = tomllib.loads(taken.read_text())
-    assert {name: read[name] for name in kept} == kept
 
 
 def test_defaults_of_a_shop_fill_what_a_file_leaves_open(drawing: Path) -> None:

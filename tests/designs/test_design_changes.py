@@ -1,6 +1,7 @@
 """Design changes: rows equal strikes of changed cues, verdicts, saving of a row (properties)."""
 
 import math
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -106,11 +107,15 @@ def test_front_of_a_tube_ends_at_a_solid_part() -> None:
 
 
 @pytest.mark.heavy
-def test_improve_take_saves_row_and_replaces_no_file(tmp_path: Path) -> None:
+def test_improve_take_saves_row_with_order_and_accuracy(tmp_path: Path) -> None:
     path, target, scene = tmp_path / "scene.toml", tmp_path / "better.toml", scene_of("kim")
     cf.save(scene, path)
+    kept = {"accuracy": {"rtol": 0.01}, "order": {"customer": "B. Player"}}
+    path.write_text(path.read_text() + '\n[accuracy]\nrtol = 0.01\n[order]\ncustomer = "B. Player"\n')
     code, out, err = call("improve", path, "--take", "2", "-o", target)
     assert (code, err) == (0, "")
     assert f"cuefem compare {path} {target}" in out
     assert cf.strike(cf.load(target)).squirt == pytest.approx(design_changes(scene).changes[1].squirt, rel=1e-9)
+    saved = tomllib.loads(target.read_text())
+    assert {name: saved[name] for name in kept} == kept
     assert_rejects("must be a row of the table, 1 to ", "improve", path, "--take", "99", "-o", tmp_path / "x.toml")

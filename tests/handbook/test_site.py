@@ -16,7 +16,7 @@ from xml.etree.ElementTree import fromstring
 import pytest
 
 import cuefem
-from tests.helpers.designer_browser import BROWSER, empty_page, open_browser
+from tests.helpers.designer_browser import BROWSER, empty_page, open_browser, violations
 
 ROOT = Path(__file__).parents[2]
 CONFIGURATION = ROOT / ".ci" / "conf.py"
@@ -126,14 +126,13 @@ def test_site_with_broken_links_fails_and_names_them(tmp_path: Path) -> None:
 @pytest.mark.skipif(not BUILT.exists(), reason="needs the site: python -m sphinx -c .ci . site")
 @pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium")
 def test_pages_of_site_are_accessible_and_not_cropped() -> None:
-    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="needs axe-playwright-python")
     found = {}
     with open_browser() as browser, empty_page(browser, BUILT.as_uri()) as page:
         for name, (width, scheme) in product(PAGES, ((1280, "light"), (390, "dark"))):
             page.set_viewport_size({"width": width, "height": 900})
             page.emulate_media(color_scheme=scheme)
             page.goto((BUILT / name).as_uri())
-            rules = [each["id"] for each in axe.Axe().run(page, options={"preload": False}).response["violations"]]
+            rules = [each["id"] for each in violations(page, preload=False)]
             if rules or page.evaluate("document.documentElement.scrollWidth") > width:
                 found[name, width] = rules
     assert found == {}

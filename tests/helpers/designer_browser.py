@@ -102,6 +102,14 @@ def designer_page(browser: Any, address: str, **how: Any) -> Iterator[Any]:
         yield page
 
 
+def violations(page: Any, **options: Any) -> list[dict[str, Any]]:
+    """The violated rules of accessibility."""
+    axe = pytest.importorskip(
+        "axe_playwright_python.sync_playwright", reason="needs axe: pip install axe-playwright-python"
+    )
+    return list(axe.Axe().run(page, options=options).response["violations"])
+
+
 def _own(url: str, address: str) -> bool:
     address = address.partition("#")[0]  # a link contains a design after #
     return url.startswith((address, address.replace("http", "ws"), "data:", f"blob:{address}"))

@@ -18,12 +18,9 @@ from cuefem.designs.sweep import SweepStatistics, sweep_charts, tabulate_sweep
 from cuefem.files.defaults_report import Assumption
 from cuefem.results.records import Record
 from cuefem.show.templates import plain_page
-from tests.helpers.designer_browser import BROWSER, empty_page, open_browser
+from tests.helpers.designer_browser import BROWSER, empty_page, open_browser, violations
 
 pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
-axe = pytest.importorskip(
-    "axe_playwright_python.sync_playwright", reason="needs axe: pip install axe-playwright-python"
-)
 pytestmark = [pytest.mark.heavy, pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium")]
 SCENE = cf.usual_scene(cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml"))
 # tables wider than their container, and elements outside the window
@@ -140,5 +137,4 @@ def test_page_is_accessible_and_not_cropped(opened: Any, what: str, width: int) 
     assert opened.evaluate(OVERLAID) == []
     opened.evaluate("document.querySelectorAll('details').forEach(fold => fold.open = true)")
     assert width == 390 or opened.evaluate(CUT) == 0
-    violations = axe.Axe().run(opened).response["violations"]
-    assert [one["id"] for one in violations if one["impact"] in ("serious", "critical")] == []
+    assert [one["id"] for one in violations(opened) if one["impact"] in ("serious", "critical")] == []
