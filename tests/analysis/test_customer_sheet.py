@@ -1,7 +1,6 @@
 """The customer's sheet: one page, one date, escaped texts, the shop's defaults, and refused shop files."""
 
 import html
-import json
 import re
 import shutil
 import subprocess
@@ -10,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from tests.helpers.command_line import call, stdout_of
+from tests.helpers.command_line import as_json, call, stdout_of
 from tests.helpers.invalid_input import assert_refused, rejected, stored_rows
 from tests.test_golden_files import assert_golden, drawing_text, page_text, rounded
 
@@ -78,9 +77,9 @@ def test_order_of_a_cue_is_on_its_sheet_and_in_no_record(drawing: Path) -> None:
 
 def test_defaults_of_a_shop_fill_what_a_file_leaves_open(drawing: Path) -> None:
     """As options do, and below them; each is said among the assumptions."""
-    filled = json.loads(stdout_of("strike", drawing, "--json"))
+    filled = as_json("strike", drawing)
     (drawing.parents[1] / "shop.toml").unlink()
-    typed = json.loads(stdout_of("strike", drawing, "--json", "--body-mass", "15 oz", "--ferrule", "1 in melamine"))
+    typed = as_json("strike", drawing, "--body-mass", "15 oz", "--ferrule", "1 in melamine")
     assert [filled.pop(key) != typed.pop(key) for key in ("assumptions",)] == [True]
     assert filled == typed
     (drawing.parents[1] / "shop.toml").write_text(SHOP)

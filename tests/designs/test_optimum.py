@@ -1,6 +1,5 @@
 """Optimization: the committed study, active limits, listed values, differential evolution (verification)."""
 
-import json
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -19,7 +18,7 @@ from cuefem.designs.study_file import load_study
 from cuefem.designs.trade_off import TradeOffResult, _Front
 from cuefem.results.uncertainty import RATIO_FLOOR
 from studies.pages import STUDIES
-from tests.helpers.command_line import stdout_of
+from tests.helpers.command_line import as_json
 from tests.helpers.cues import kim, low_deflection
 from tests.helpers.invalid_input import assert_rejects
 from tests.helpers.sweeps import OPTIMUM, write_study
@@ -84,7 +83,7 @@ def best() -> Optimum:
 def test_committed_study_equals_optimum_of_exact_gradients(tmp_path: Path) -> None:
     """The optimum of exact gradients; the saved scene has the required stiffness."""
     goal = tmp_path / "best.toml"
-    record = json.loads(stdout_of("study", STUDY, "--json", "-o", goal))
+    record = as_json("study", STUDY, "-o", goal)
     assert (record["kind"], record["objective"], record["stop_reason"]) == ("optimum", {"minimize": "squirt_slope"}, "")
     # a vertex: five limits are active and determine the five parameters
     assert record["value"] == pytest.approx(0.04242492565, rel=1e-6)

@@ -1,21 +1,19 @@
 """Stores: interruption, resumption, edited studies, damage, tables (properties)."""
 
 import csv
-import json
 import os
 import random
 import re
 import signal
 import time
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from cuefem.designs import evaluate
 from cuefem.designs.study_file import load_study
 from cuefem.files import InputError
-from tests.helpers.command_line import call, stdout_of
+from tests.helpers.command_line import as_json, call, stdout_of
 from tests.helpers.invalid_input import assert_unchanged, file_contents
 from tests.helpers.sweeps import (
     GRID,
@@ -29,11 +27,6 @@ from tests.helpers.sweeps import (
     wait_for_rows,
     write_study,
 )
-
-
-def record_of(study: Path, *options: object) -> dict[str, Any]:
-    """The record of `study --json`."""
-    return dict(json.loads(stdout_of("study", study, "--json", *options)))
 
 
 # --- kill -9, Ctrl-C, edits ------------------------------------------------------------------------------------------
@@ -51,7 +44,7 @@ def test_study_killed_edited_and_resumed_has_same_table(tmp_path: Path) -> None:
         counts.append(stored_count(store))
     assert 0 < counts[1] <= counts[2] <= counts[3]
     whole, own = tmp_path / "whole.csv", tmp_path / "own.csv"
-    assert record_of(study, "-o", whole)["evaluated"] == 200 - counts[3]
+    assert as_json("study", study, "-o", whole)["evaluated"] == 200 - counts[3]
     edited = study.read_text(encoding="utf-8").replace("high = 1.3", "high = 1.4")
     study = write_study(tmp_path, edited, name="edited.toml")
     stdout_of("study", study, "--store", store, "-o", tmp_path / "edited.csv")
@@ -92,13 +85,14 @@ def test_edited_study_computes_only_new_designs(tmp_path: Path) -> None:
     store = tmp_path / "all.sqlite"
     for (old, new), size, fresh in EDITS:
         study = write_study(tmp_path, GRID.replace(old, new))
-        record = record_of(study, "--store", store)
+        record = as_json("study", study, "--store", store)
         assert (record["designs"], record["evaluated"]) == (size, fresh), new
         (tmp_path / "own.sqlite").unlink(missing_ok=True)
         assert computed_rows(study, store) == computed_rows(study, tmp_path / "own.sqlite")
     edited = SCENE.replace('tip_diameter = "12 mm"', 'tip_diameter = "12.5 mm"')
-    assert record_of(write_study(tmp_path, GRID, edited), "--store", store)["evaluated"] == 0  # the same designs
-    assert record_of(write_study(tmp_path, GRID, SCENE.replace("420 g", "421 g")), "--store", store)["evaluated"] == 8
+    assert as_json("study", write_study(tmp_path, GRID, edited), "--store", store)["evaluated"] == 0  # the same designs
+    heavier = SCENE.replace("420 g", "421 g")
+    assert as_json("study", write_study(tmp_path, GRID, heavier), "--store", store)["evaluated"] == 8
 
 
 def test_parts_in_stores_of_their_own_are_one_study(tmp_path: Path) -> None:
@@ -106,16 +100,16 @@ def test_parts_in_stores_of_their_own_are_one_study(tmp_path: Path) -> None:
     stdout_of("study", study, "--store", tmp_path / "whole.sqlite", "-o", tmp_path / "whole.csv")
     counts, stores = list[int](), list[object]()
     for number in (1, 2, 3):
-        record = record_of(study, "--part", f"{number}/3")
+        record = as_json("study", study, "--part", f"{number}/3")
         assert record["store"] == str(tmp_path / f"study.{number}_of_3.sqlite")
         counts.append(record["designs"])
         stores += ["--store", record["store"]]
     assert counts == [3, 3, 2]
     before = file_contents(tmp_path)
-    assert record_of(study, *stores, "-o", tmp_path / "table.csv")["evaluated"] == 0
+    assert as_json("study", study, *stores, "-o", tmp_path / "table.csv")["evaluated"] == 0
     assert (tmp_path / "table.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
     assert {path: file_contents(tmp_path)[path] for path in before} == before
-    assert record_of(study, *stores[:4])["evaluated"] == 2  # into the first
+    assert as_json("study", study, *stores[:4])["evaluated"] == 2  # into the first
     assert [stored_count(Path(str(each))) for each in stores[1::2]] == [5, 3, 2]
 
 

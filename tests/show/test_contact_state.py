@@ -29,14 +29,6 @@ def test_regime_with_long_partial_slip_warns(speed: float, offset: float, regime
     assert bool(regime_warning(regime)) == (regime != "stick") == (outcome.squirt / offset > 1.2 * close.squirt / 0.2)
 
 
-def test_end_mass_of_miscue_raises() -> None:
-    """Its squirt hardly depends on the cue: the end mass would be 18.7 g at b/R 0.63, and 7 g with stick."""
-    miscue = replace(LEATHER, stroke=cf.Stroke(2.0, 0.63))
-    assert cf.strike(miscue).regime == "miscue"
-    with pytest.raises(ValueError, match=r"the stroke miscues at b/R 0\.63: its squirt has no end mass"):
-        cf.end_mass(miscue, "squirt")
-
-
 @pytest.mark.parametrize(("scene", "offset", "regime"), REGIMES)
 def test_regime_beyond_friction_cone_is_miscue(scene: cf.Scene, offset: float, regime: str) -> None:
     assert cf.strike(replace(scene, stroke=cf.Stroke(2.0, offset))).regime == regime
