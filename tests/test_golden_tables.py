@@ -17,11 +17,13 @@ from cuefem.cue.materials import material
 from cuefem.designer.controls import KNOBS, parse, range_of
 from cuefem.designs.evaluation import Response
 from cuefem.effects.effect import effect_kinds
+from cuefem.files.misplaced_diameters import misplaced_rows
 from cuefem.files.parts_catalogue import CATALOGUE_SHAFTS, catalogue_shaft
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, PivotLength, Squirt
 from cuefem.measurements.recording import spectral_peaks
 from cuefem.measurements.shot import Shot
 from cuefem.parameters.scene_changes import with_parameters
+from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import METRIC, US, displayed_in
 from cuefem.quantity.fields import quantity_fields
 from cuefem.quantity.units import UNITS, unit_of
@@ -186,9 +188,31 @@ def measurements(folder: Path) -> list[object]:
     return rows + [(each.name, each.label, *map(each.value, (-1.0, 0.0, 1.0))) for each in parameters]
 
 
-@pytest.mark.parametrize(
-    "table", [options, results, units, games, shafts, ranges, bounds, effects, changes, warnings, limits, measurements]
-)
+def spreads(folder: Path) -> list[object]:
+    """Uncertainties of parameters: with a spring as the tip; of a solid shaft, a bored one and a tube with leather."""
+    shafts = ["studies/scenes/kim.toml", *(f"meshes/{name}.toml" for name in ("pool_maple", "pool_hollow", "carbon"))]
+    loaded = [cf.load(path) for path in shafts]
+    scenes = [each if isinstance(each, cf.Scene) else cf.usual_scene(each) for each in loaded]
+    ivory = with_parameters(scenes[1], {"ferrule material": "ivory"})
+    scenes.append(replace(ivory, cue=replace(ivory.shaft, assumed_body_mass=ivory.shaft.body_mass)))
+    return [(key, each.below, *map(each.spread_in, scenes)) for key, each in PARAMETERS.items()]
+
+
+def slips(folder: Path) -> list[object]:
+    """Rows of a shaft with a chamfer that are listed as misplaced, and why, after a factor of one diameter."""
+    x, d = (0.0, 8e-3, 0.03, 0.2, 0.4, 0.6, 0.73), (0.01248, 0.01275, 0.0128, 0.0133, 0.015, 0.018, 0.0215)
+    rows = list[object]()
+    for row in range(len(d)):
+        for factor in (1 / 25.4, 0.01, 0.1, 0.49, 0.51, 0.61, 0.64, 0.655, 0.68, 1.47, 1.52, 1.58, 1.62, 2.1, 10, 25.4):
+            slipped = (*d[:row], factor * d[row], *d[row + 1 :])
+            rows += [(row, factor, *misplaced_rows(x, slipped, in_inches=unit)) for unit in (False, True)]
+    return rows
+
+
+TABLES = options, results, units, games, shafts, ranges, bounds, effects, changes, warnings, limits, measurements
+
+
+@pytest.mark.parametrize("table", [*TABLES, spreads, slips])
 def test_table_equals_golden_file(
     table: Callable[[Path], list[object]], tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:

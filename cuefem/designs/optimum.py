@@ -55,8 +55,6 @@ class Limit:
     >>> import cuefem as cf
     >>> cf.Limit(cf.Response("tip_stiffness"), low=1500.0).sides
     [(1, 1500.0)]
-    >>> cf.Limit(cf.Response("squirt", 0.3), high=0.03).sides
-    [(-1, 0.03)]
     """
 
     response: Response

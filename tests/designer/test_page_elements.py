@@ -155,6 +155,7 @@ async def of_typed_values() -> str:
         page.session.set_knob("bore", DRILLED)
         page.session.compare_with(OPENED)
         page.show()
+        enter("bore_width", "1 m")(page)
         lines += map(line, page.controls.rows)
     return "\n".join(lines) + "\n"
 

@@ -61,7 +61,7 @@ def test_change_is_the_root_mean_square_of_changes_over_their_ranges() -> None:
     stiffer = Vary(("cue.segments[3].material.E",), Span(0.6, 1.6), "stiffer", factor=True)
     heavier = Vary(("cue.body_mass",), Span(-0.02, 0.08), "heavier", shift=True)
     wood = Vary(("cue.segments[3].material",), Levels(("hard maple", "ash")), "wood")
-    problem = replace(PROBLEM, vary=(BORE, stiffer, heavier, wood), limits=())
+    problem = replace(PROBLEM, vary=(BORE, stiffer, heavier, wood), limits=(Limit(Response("squirt", 0.3), high=0.03),))
     shares = np.array([problem.shares(problem.start)[0] + 0.1, 0.4 + 0.2, 0.2 + 0.4])
     for name, square in ((problem.base_value(wood), 0.21), ("ash", 1.21)):
         assert replace(problem, choice={3: name}).change(shares) == pytest.approx(np.sqrt(square / 4), rel=1e-12)
