@@ -24,10 +24,6 @@ def test_lumped_cue_to_rtol_agrees_with_impulse(lumped: cf.Scene) -> None:
     assert abs(result.squirt - exact.squirt) <= 1e-3 * max(abs(exact.squirt), abs(lumped.stroke.angle))
 
 
-def test_end_mass_to_rtol_of_lumped_cue_is_its_own() -> None:
-    assert cf.end_mass(replace(KIM, cue=cf.LumpedCue(0.5, 0.006)), "force", rtol=1e-3) == 0.006
-
-
 def test_smaller_rtol_takes_more_modes_or_steps() -> None:
     levels = [list(refinement_levels(KIM, rtol))[-1] for rtol in (0.5, 1e-2, 1e-3, 3e-4)]
     work = [level.modes * level.steps for level in levels]

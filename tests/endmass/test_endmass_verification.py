@@ -104,4 +104,4 @@ def test_force_end_mass_is_continuous_at_resonance() -> None:
 @pytest.mark.parametrize("drive", ["stick", "velocity", "force", "squirt"])
 def test_end_mass_lumped_cue_is_its_own(drive: str) -> None:
     lumped = Scene(LumpedCue(0.54, 0.0123))
-    assert end_mass(lumped, drive) == 0.0123
+    assert end_mass(lumped, drive) == end_mass(lumped, drive, rtol=1e-3) == 0.0123
