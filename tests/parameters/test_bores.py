@@ -15,7 +15,7 @@ from cuefem.parameters.table import PARAMETERS
 from tests.helpers.bored_cues import bored_cues
 from tests.helpers.examples import examples
 
-HEAD = "x [mm];diameter [mm];bore [mm]\n"
+HEAD = "x [mm];diameter [mm];bore [mm];material\n"
 # Rows, and where the bore begins, its depth and its width, mm.
 DRAWINGS = {
     "from the front": ("0;12,4;7\n200;12,6;\n730;21;\n", (0, 200, 7)),
@@ -24,11 +24,9 @@ DRAWINGS = {
     "behind a plug of 100 mm": ("0;12,4;\n100;12,4;7\n206;12,6;\n730;21;\n", (100, 106, 7)),
     "stepped": ("0;12,4;\n25;12,4;8\n75;12,5;8\n75;12,5;6\n200;12,6;\n730;21;\n", (25, 175, 8)),
     "two bores": ("0;12,4;\n6;12,4;7\n100;12,5;\n120;12,5;9\n200;12,6;\n730;21;\n", (6, 94, 7)),
+    "in a ferrule": ("0;12,4;;melamine\n6;12,4;7;\n25;12,4;7;hard maple\n200;12,6;\n730;21;\n", (6, 194, 7)),
     "at the joint alone": ("0;12,4;\n200;12,6;\n680;20;8\n730;21;\n", (0, 0, 6)),
 }
-FERRULED = (
-    "x [mm];diameter [mm];bore [mm];material\n0;12,4;;melamine\n6;12,4;7;\n25;12,4;7;hard maple\n200;12,6;\n730;21;\n"
-)
 
 
 def drawn(folder: Path, text: str) -> cf.Scene:
@@ -37,20 +35,12 @@ def drawn(folder: Path, text: str) -> cf.Scene:
     return cf.Scene(cf.load(path, body_mass="15 oz"), stroke=cf.Stroke(2.0, 0.3))
 
 
-def sizes(scene: cf.Scene) -> list[float]:
-    """Where the bore begins, its depth and its width, mm."""
-    numbers = bore_mouth(scene.cue), *(PARAMETERS[key].value(scene) for key in ("bore_depth", "bore_width"))
-    return [1e3 * number for number in numbers]
-
-
 @pytest.mark.parametrize("name", DRAWINGS)
 def test_bore_parameters_read_it_where_it_starts(name: str, tmp_path: Path) -> None:
     rows, expected = DRAWINGS[name]
-    assert sizes(drawn(tmp_path, HEAD + rows)) == pytest.approx(expected, rel=1e-12)
-
-
-def test_bore_inside_a_ferrule_begins_there(tmp_path: Path) -> None:
-    assert sizes(drawn(tmp_path, FERRULED)) == pytest.approx([6, 194, 7], rel=1e-12)
+    scene = drawn(tmp_path, HEAD + rows)
+    sizes = bore_mouth(scene.cue), PARAMETERS["bore_depth"].value(scene), PARAMETERS["bore_width"].value(scene)
+    assert sizes == pytest.approx([1e-3 * size for size in expected], rel=1e-12)
 
 
 def test_bore_change_behind_a_plug_widens_it(tmp_path: Path) -> None:
