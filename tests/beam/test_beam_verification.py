@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from functools import reduce
 from itertools import pairwise
 
 import numpy as np
@@ -15,6 +15,7 @@ from cuefem import Cue, Joint, Material, PointMass, Resolution, Segment, Support
 from cuefem.beam import assembly, eigensolver, weak_forms
 from cuefem.beam.meshing import mesh_cue
 from cuefem.beam.modes import solve
+from cuefem.parameters.parts import split_at
 from studies.strokes import NAMES
 from studies.strokes import cue as reference_cue
 from tests.helpers.cues import CARBON, FOAM, MAPLE, isotropic_kim, kim, rod, stiff_ferrule
@@ -164,31 +165,8 @@ def test_mesh_has_node_at_every_jump_and_position() -> None:
         assert mesh.n_dof == 2 + np.sum(2 * mesh.orders + 1)
 
 
-def sliced(cue: Cue, count: int) -> Cue:
-    """The same cue drawn in about ``count`` slices."""
-    pieces = []
-    for segment in cue.segments:
-        n = max(round(count * segment.length / cue.length), 1)
-        outer, bore = (
-            np.linspace(*ends, n + 1)
-            for ends in ((segment.tip_diameter, segment.butt_diameter), (segment.tip_bore, segment.butt_bore))
-        )
-        for i in range(n):
-            pieces.append(
-                replace(
-                    segment,
-                    length=segment.length / n,
-                    tip_diameter=outer[i],
-                    butt_diameter=outer[i + 1],
-                    tip_bore=bore[i],
-                    butt_bore=bore[i + 1],
-                )
-            )
-    return Cue(tuple(pieces), cue.body_mass)
-
-
 def test_mesh_sliced_cone_equals_whole_cone() -> None:
     expected = mesh_cue(COMPOSITE, 12)
-    slices = sliced(COMPOSITE, 300)
+    slices = reduce(split_at, np.linspace(0.0, COMPOSITE.length, 300)[1:-1], COMPOSITE)
     np.testing.assert_allclose(mesh_cue(slices, 12).nodes, expected.nodes, rtol=1e-12)
     np.testing.assert_allclose(modes(slices, 12).frequencies, modes(COMPOSITE, 12).frequencies, rtol=1e-6)
