@@ -16,8 +16,7 @@ from tests.helpers.accuracy_scenes import family, scene
 
 def all_modes(scene: cf.Scene, count: int) -> Modes:
     """All modes of a mesh for ``count`` modes."""
-    assert isinstance(scene.cue, cf.Cue)
-    system = assemble(scene.cue, count, scene.cue_effects)
+    system = assemble(scene.shaft, count, scene.cue_effects)
     return solve(system, system.size - system.rigid_basis.shape[1])
 
 
@@ -27,8 +26,7 @@ def checked_numbers(outcome: cf.Outcome) -> np.ndarray:
 
 def reference(scene: cf.Scene, modes: int) -> np.ndarray:
     """Squirt, ball speed and spin from far more modes, on the mesh for twice as many."""
-    assert isinstance(scene.cue, cf.Cue)
-    system = assemble(scene.cue, 2 * modes, scene.cue_effects)
+    system = assemble(scene.shaft, 2 * modes, scene.cue_effects)
     result = solve(system, modes, n_corrected=2 if has_moment_arm(scene) else 1)
     return checked_numbers(strike_modes(scene, tip_modes_from(result, scene), steps=3200))
 

@@ -17,12 +17,6 @@ MODES = 12
 AT = Resolution(3, 14, MODES)
 
 
-def dashpot_scene(contact_time: float, dashpot: float, position: float = 0.1) -> Scene:
-    """A shaft with a dashpot."""
-    hand = Support(position, 2e3, 0.0, dashpot)
-    return Scene(SHAFT, tip=Tip(contact_time=contact_time), stroke=Stroke(1.0, 0.3), effects=(hand,))
-
-
 def stepped_end_mass(scene: Scene, steps: int) -> float:
     """Sum of impulses, each at the middle of a step, after which the tip has the velocity (1 - cos(pi t/T))/2."""
     modes = bending(SHAFT, scene.cue_effects, MODES + 2)
@@ -42,6 +36,7 @@ def stepped_end_mass(scene: Scene, steps: int) -> float:
 
 @pytest.mark.parametrize(("contact_time", "dashpot"), [(0.5e-3, 5.0), (1e-3, 20.0), (2e-3, 60.0)])
 def test_velocity_end_mass_equals_small_steps(contact_time: float, dashpot: float) -> None:
-    scene = dashpot_scene(contact_time, dashpot)
+    hand = Support(0.1, 2e3, 0.0, dashpot)
+    scene = Scene(SHAFT, tip=Tip(contact_time=contact_time), stroke=Stroke(1.0, 0.3), effects=(hand,))
     expected = end_mass(scene, "velocity", AT)
     assert stepped_end_mass(scene, 8000) == pytest.approx(expected, rel=1e-5)
