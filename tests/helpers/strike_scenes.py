@@ -9,7 +9,7 @@ from math import pi
 import numpy as np
 from hypothesis import strategies as st
 
-from cuefem import Ball, Cue, LumpedCue, Material, Outcome, Resolution, Scene, Segment, Stroke, Tip
+from cuefem import Cue, Material, Outcome, Resolution, Scene, Segment, Stroke, Tip
 from cuefem.beam.tip_modes import TipModes
 from tests.helpers.cues import kim
 
@@ -119,14 +119,3 @@ RESTITUTION = st.one_of(st.sampled_from([0.05, 1.0, 0.75]), st.floats(0.05, 1.0)
 FRICTION = st.one_of(st.sampled_from([0.0, 1e-6, float("inf"), 0.7]), st.floats(0.02, 2.0))
 OFFSET = st.one_of(st.sampled_from([0.0, 1e-9, 0.3, 0.999]), st.floats(1e-4, 0.95))
 SIGN = st.sampled_from([1.0, -1.0])
-BALL = st.builds(Ball, mass=st.floats(0.05, 0.5), radius=st.floats(0.02, 0.04), inertia=st.floats(0.1, 1.0))
-
-
-@st.composite
-def lumped_scenes(draw: st.DrawFn) -> Scene:
-    """Any lumped cue, coupled or not, any tip, ball and stroke."""
-    mass, end_mass = draw(logarithmic(0.02, 50.0)), draw(logarithmic(1e-5, 2.0))
-    coupling = draw(st.one_of(st.just(0.0), st.floats(-0.9, 0.9))) / np.sqrt(mass * end_mass)
-    tip = Tip(draw(RESTITUTION), draw(FRICTION), contact_time=draw(logarithmic(1e-4, 2e-2)))
-    stroke = Stroke(draw(logarithmic(0.01, 10.0)), draw(SIGN) * draw(OFFSET))
-    return Scene(LumpedCue(mass, end_mass, coupling), draw(BALL), tip, stroke)
