@@ -33,9 +33,11 @@ from cuefem.results.quantities import RESULTS
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.scene.default_scene import GAMES
 from cuefem.scene.solved_scene import SolvedScene
+from tests.helpers import measured_cues
 from tests.helpers.command_line import call
 from tests.helpers.cues import any_size
-from tests.helpers.measured_cues import SCENE, measured_cue
+from tests.helpers.invalid_input import assert_calls_refused
+from tests.helpers.measured_cues import measured_cue
 from tests.quantity.test_declared_fields import INSTANCES
 from tests.test_golden_files import assert_golden
 
@@ -145,27 +147,6 @@ def warnings(folder: Path) -> list[object]:
     return [warning for scene in scenes for warning in plausibility_warnings(scene)]
 
 
-@any_size()
-def limits(folder: Path) -> list[object]:
-    """What is refused for its size, with the bound; files and texts of commands are in the tests of their rooms."""
-    tip, scene = cf.LeatherTip(6e-3, 1.0, 2e8), cf.Scene(CUE)
-    refused: list[Callable[[], object]] = [
-        *(partial(replace, tip, layers=(cf.TipLayer(1e-4, E),)) for E in (1e5, 1e13)),
-        *(partial(replace(tip, height=height).check_diameter, 0.012) for height in (5e-4, 0.04)),
-        *(partial(cf.Resolution, 8, 6, 40, steps=steps) for steps in (19, 1_000_001)),
-        partial(with_parameters, scene, {"shaft mass": 1e-3}),
-        partial(with_parameters, cf.usual_scene(cf.load("meshes/pool_maple.toml")), {"ferrule length": 1.0}),
-        partial(cf.Span, 1.0, 2.0, 2**20 + 1),
-        partial(cf.save_motion, scene, folder / "motion", frames=10_001),
-        partial(spectral_peaks, np.arange(2.0)[::-1, None], 5e3, 50.0, 500.0),
-        partial(spectral_peaks, np.ones((9, 1)), 5e5, 50.0, 500.0),
-        partial(parse, "offset", "0.30000" + "0" * 34, scene),
-        *(partial(Response.of, f"squirt({offset})") for offset in (-1.5, 1.5)),
-        *(partial(cf.Normal, *numbers) for numbers in ((700.0, np.inf), (np.inf, 1.0), (700.0, -1.0))),
-    ]
-    return [raised(call) for call in refused]
-
-
 def raised(made: Callable[[], object]) -> str:
     """The error of a call, or ""."""
     try:
@@ -183,7 +164,7 @@ def measurements(folder: Path) -> list[object]:
         arguments = [each.replace(annotation=Parameter.empty) for each in signature(kind).parameters.values()]
         rows.append(f"{name}{Signature(arguments)}")
     rows += [row for kind in MEASUREMENT_TYPES.values() for row in kind.candidates(scene)]
-    shot = Shot(cue_offset=0.0143, left=0.04, right=0.038, distance=1.2).squirt(SCENE)
+    shot = Shot(cue_offset=0.0143, left=0.04, right=0.038, distance=1.2).squirt(measured_cues.SCENE)
     parameters = measured_cue(shot, *(row for row in rows if isinstance(row, Squirt | PivotLength))).parameters
     return rows + [(each.name, each.label, *map(each.value, (-1.0, 0.0, 1.0))) for each in parameters]
 
@@ -209,7 +190,7 @@ def slips(folder: Path) -> list[object]:
     return rows
 
 
-TABLES = options, results, units, games, shafts, ranges, bounds, effects, changes, warnings, limits, measurements
+TABLES = options, results, units, games, shafts, ranges, bounds, effects, changes, warnings, measurements
 
 
 @pytest.mark.parametrize("table", [*TABLES, spreads, slips])
@@ -219,3 +200,13 @@ def test_table_equals_golden_file(
     text = "".join(f"{row}\n" for row in table(tmp_path))
     text = re.sub(r"\d+\.\d{9,}(?!\d|e)", lambda number: f"{float(number[0]):.8g}", text)
     assert_golden(f"table_{table.__name__}.txt", text, request, exact=True)
+
+
+TIP, SCENE = cf.LeatherTip(6e-3, 1.0, 2e8), cf.Scene(CUE)
+CALLS = {"np": np} | {each.__name__: each for each in (parse, replace, spectral_peaks, with_parameters)}
+
+
+@any_size()
+def test_size_beyond_its_limit_is_refused(request: pytest.FixtureRequest) -> None:
+    """With the bound; files and texts of commands are in the tests of their rooms."""
+    assert_calls_refused("limits", globals() | CALLS, request)

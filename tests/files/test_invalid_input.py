@@ -117,24 +117,15 @@ def open_store(path: Path) -> None:
 
 
 PIECE = '[[segments]]\nlength = "{}"\ntip_diameter = "{}"\nbutt_diameter = "21 mm"\nmaterial = "hard maple"\n'
-LARGE = {
-    "long": PIECE.format("1e9 m", "12 mm"),
-    "wide": PIECE.format("700 mm", "99999 mm"),
-    "short contact": 'tip = { contact_time = "1e-12 s" }\ncue = { mass = "1 kg", end_mass = "6 g" }\nstroke = {}\n',
-    "2,001 segments": PIECE.format("1 mm", "12 mm") * 2001,
-    "1 MB": PIECE.format("1 mm", "12 mm") * 40_000,
-    "keys of 20,001 parts": "a" + ".a" * 20_000 + " = 1\n",
-    "keys in quotes": "x = {" + '"a".' * 20_000 + "a = 1}\n",
-    "200,000 blanks": PIECE.format("700" + 200_000 * " " + "x", "12 mm"),
-}
 
 
 def test_file_of_unlimited_time_or_memory_is_rejected(tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    """Each row: what a file holds, in Python."""
     path = tmp_path / "cue.toml"
     messages = {}
-    for name, text in LARGE.items():
-        path.write_text(text, encoding="utf-8")
-        messages[name] = rejection(path)
+    for row in stored_rows("large_files"):
+        path.write_text(eval(row), encoding="utf-8")
+        messages[row] = rejection(path)
     assert_refused("large_files", messages, request)
 
 

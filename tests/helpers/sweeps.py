@@ -107,14 +107,10 @@ def alter_store(path: Path, command: str, *values: object) -> None:
     file.close()
 
 
-def command(study: Path, *more: str) -> list[str]:
-    return [sys.executable, "-m", "cuefem", "study", str(study), *more]
-
-
 def start_study(study: Path, *more: str) -> subprocess.Popen[bytes]:
     quiet = subprocess.PIPE
     return subprocess.Popen(
-        command(study, *more),
+        [sys.executable, "-m", "cuefem", "study", str(study), *more],
         env=ENVIRONMENT,
         stdout=quiet,
         stderr=quiet,

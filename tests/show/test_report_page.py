@@ -113,15 +113,6 @@ def test_pivot_chart_ends_about_a_cue_length_from_the_tip() -> None:
     assert 1050 < far < beyond < 1700
 
 
-@pytest.mark.parametrize(("count", "rows"), [(13, 13), (25, 6)])
-def test_squirt_curve_lists_each_offset_or_says_how_many(count: int, rows: int) -> None:
-    """Offsets that no decimal hits exactly; the multiples of 0.1 of more than 20."""
-    table = cf.squirt_curve(LUMPED, np.linspace(0.05, 0.65, count)).table()
-    assert [row[0] for row in table.rows][-1] == ("0.65" if rows == count else "0.6")
-    assert len(table.rows) == rows
-    assert (f"{rows} of {count} offsets, each 0.1." in table.notes) is (rows < count)
-
-
 def test_squirt_curve_head_on_has_no_pivot_length() -> None:
     shown = cf.squirt_curve(LUMPED, (-0.3, 0.0, 0.3))
     left, head_on, right = shown.models["coupled, this cue"]["pivot_length"]
