@@ -164,8 +164,9 @@ def measurements(folder: Path) -> list[object]:
         arguments = [each.replace(annotation=Parameter.empty) for each in signature(kind).parameters.values()]
         rows.append(f"{name}{Signature(arguments)}")
     rows += [row for kind in MEASUREMENT_TYPES.values() for row in kind.candidates(scene)]
-    shot = Shot(cue_offset=0.0143, left=0.04, right=0.038, distance=1.2).squirt(measured_cues.SCENE)
-    parameters = measured_cue(shot, *(row for row in rows if isinstance(row, Squirt | PivotLength))).parameters
+    shot = Shot(cue_offset=0.0143, left=0.04, right=0.038, distance=1.2)
+    shots = [each.squirt(measured_cues.SCENE) for each in (shot, replace(shot, elevation=0.05, speed=3.0))]
+    parameters = measured_cue(*shots, *(row for row in rows if isinstance(row, Squirt | PivotLength))).parameters
     return rows + [(each.name, each.label, *map(each.value, (-1.0, 0.0, 1.0))) for each in parameters]
 
 

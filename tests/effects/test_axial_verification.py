@@ -72,6 +72,8 @@ def test_axial_waves_stated_butt_equals_drawn_butt():
     assert (butt.material.E / butt.material.rho) ** 0.5 == pytest.approx(4430.0, rel=1e-12)
     assert contact_of(cf.strike(scene), cue) == pytest.approx(contact_of(cf.strike(head_on(drawn)), drawn), rel=1e-5)
     assert cf.end_mass(scene, "velocity") == cf.end_mass(head_on(cue), "velocity")
+    ends = [replace(waves, cue_length=cue.length + behind).with_butt(cue) for behind in (0.0499, 0.0501)]
+    assert [end == cue for end in ends] == [True, False]
 
 
 def test_axial_waves_narrow_joint_end_is_inside_the_butt() -> None:

@@ -81,19 +81,24 @@ def test_formulas_are_text_in_terminal_and_mathml_on_page() -> None:
 
 @pytest.mark.parametrize("has_browser", [True, False])
 def test_guide_opens_prints_and_writes(has_browser: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    opened: list[str] = []
+    opened, first = list[str](), list[str]()
 
     def opens(address: str) -> bool:
         opened.append(address)
         return has_browser
 
-    monkeypatch.setattr(import_module("cuefem.cli.guide_command"), "page", lambda opens_with="": whole())
+    def made(opens_with: str = "") -> str:
+        first.append(opens_with)
+        return whole()
+
+    monkeypatch.setattr(import_module("cuefem.cli.guide_command"), "page", made)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     monkeypatch.setattr(webbrowser, "open", opens)
     assert stdout_of("guide", "glossary").startswith("opened file:" if has_browser else "no browser found")
     (page_file,) = tmp_path.glob("cuefem-guide-*.html")
     assert opened == [f"{page_file.as_uri()}#glossary"]
     assert stdout_of("guide", "-o", tmp_path / "guide.html") == f"wrote {tmp_path / 'guide.html'}\n"
+    assert first == ["", CHAPTERS[0]]
     assert page_file.read_text(encoding="utf-8") == (tmp_path / "guide.html").read_text(encoding="utf-8") == whole()
     printed = stdout_of("guide", "glossary", "--print")
     assert ("effective end mass" in printed, "Hutchinson" in printed) == (True, False)
