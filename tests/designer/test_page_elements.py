@@ -166,7 +166,7 @@ def shown(page: Page) -> dict[str, str]:
     enabled = [each.enabled for each in (header.undo, header.redo)]
     rows = {row.key: f"{line(row)} {row.root.visible} {' '.join(row.field.classes)}" for row in page.controls.rows}
     return rows | {
-        "name": f"{header.name.value} {header.changed.text}",
+        "name": f"{header.name.value} {header.changed.text} {page.session.file_name('csv')}",
         "steps": f"{history.at} of {len(history.steps)} {enabled}",
         "banner": f"{page.banner.text} {page.banner.visible}",
         "compare": f"{screen.compare.value} of {screen.compare.options} {screen.swap.visible}",
@@ -249,7 +249,7 @@ STEPS: dict[str, Step] = {
     "redo again": press("Z", shift=True),
     "no key": press("z", ctrl=False),
     "key up": press("z", down=False),
-    "rename": lambda page: page.header.name.set_value(" my cue "),
+    "rename": lambda page: page.header.name.set_value(" my/cue 2 "),
     "drill": choose("bore", DRILLED),
     "slide the bore": slide("bore_width", 4.0),
     "fill": choose("bore", "none"),
