@@ -45,17 +45,6 @@ def test_bore_by_text_in_any_unit_is_the_same(text: str) -> None:
     assert behind.tip_bore == 0
 
 
-@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
-def test_bore_with_ferrule_starts_behind_the_tenon() -> None:
-    leather, ferrule, bored, rest = with_additions(
-        CONE, front="leather 6 mm", ferrule="1 in melamine", bore="6 mm wide, 100 mm deep"
-    ).segments
-    assert (leather.material, ferrule.material, bored.material) == (material("leather"), material("melamine"), MAPLE)
-    lengths = [segment.length for segment in (leather, ferrule, bored)]
-    assert lengths == pytest.approx([0.006, 0.0254, 0.1], rel=1e-9)
-    assert (bored.tip_bore, bored.core, rest.tip_bore) == (0.006, None, 0)
-
-
 def test_ferrule_without_tenon_text_reports_the_default_tenon(tmp_path: Path) -> None:
     assumed = [
         as_json("modes", shaft(tmp_path), "--ferrule", f"25 mm melamine{x}")["assumptions"] for x in ("", ", no tenon")
