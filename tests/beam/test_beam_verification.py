@@ -154,17 +154,6 @@ def test_tip_responds_to_force_and_couple_alike_by_every_solver(monkeypatch: pyt
         assert np.max(np.abs(sparse - whole) / scale) < 1e-8
 
 
-def test_mesh_has_node_at_every_jump_and_position() -> None:
-    """Nodes lie at jumps and at positions, none twice; a smooth part is one element."""
-    effects = tuple(PointMass(position=x, mass=0.0) for x in (0.1, 0.006, 0.1))
-    for at, elements in ((Resolution(2, 3, 1), 8), (6, 4)):
-        mesh = mesh_cue(COMPOSITE, at, effects)
-        for x in (0.0, 0.006, 0.1, 0.306, 0.706):
-            assert np.min(np.abs(mesh.nodes - x)) < 1e-15
-        assert len(mesh.orders) == elements
-        assert mesh.n_dof == 2 + np.sum(2 * mesh.orders + 1)
-
-
 def test_mesh_sliced_cone_equals_whole_cone() -> None:
     expected = mesh_cue(COMPOSITE, 12)
     slices = reduce(split_at, np.linspace(0.0, COMPOSITE.length, 300)[1:-1], COMPOSITE)

@@ -1,4 +1,4 @@
-"""Modes: orthogonality, `near`, the default mesh, and tip modes (verification)."""
+"""Modes: orthogonality, `near` and the default mesh (verification)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import pytest
 
 from cuefem import Cue, modes
 from cuefem.beam.eigensolver import solve_eigenproblem
-from cuefem.beam.tip_modes import tip_modes
 from tests.helpers.cues import FAMILY, isotropic_kim, kim, scaled, stiff_ferrule
 
 SHAFTS = {**FAMILY, "stiff ferrule": stiff_ferrule()}
@@ -17,17 +16,16 @@ def scalar_product(
     cue: Cue, first: tuple[np.ndarray, np.ndarray], second: tuple[np.ndarray, np.ndarray], nodes: np.ndarray
 ) -> np.ndarray:
     """Integral of rhoA w1 w2 + rhoI theta1 theta2 over the cue; each pair (w, theta) at `stations` between nodes."""
-    x, weights = stations(cue, nodes)
+    x, weights = stations(nodes)
     s = cue.section(x)
     return first[0] * (weights * s.rhoA) @ second[0].T + first[1] * (weights * s.rhoI) @ second[1].T
 
 
-def stations(cue: Cue, nodes: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss points and weights of every segment, or between ``nodes``, m."""
+def stations(nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss points and weights between ``nodes``, m."""
     points, weights = np.polynomial.legendre.leggauss(40)
-    ends = cue.nodes if nodes is None else nodes
-    lengths = np.diff(ends)
-    return (ends[:-1, None] + lengths[:, None] * (points + 1) / 2).ravel(), np.outer(lengths, weights / 2).ravel()
+    lengths = np.diff(nodes)
+    return (nodes[:-1, None] + lengths[:, None] * (points + 1) / 2).ravel(), np.outer(lengths, weights / 2).ravel()
 
 
 @pytest.mark.parametrize("size", range(2, 9))
@@ -55,7 +53,7 @@ def test_modes_are_orthonormal_in_mass(name: str) -> None:
     cue = SHAFTS[name]
     result = modes(cue, 8)
     nodes = result.system.mesh.nodes
-    x, _ = stations(cue, nodes)
+    x, _ = stations(nodes)
     shape = result.shape(x)
     np.testing.assert_allclose(scalar_product(cue, shape, shape, nodes), np.eye(8), rtol=0, atol=1e-9)
     rigid = np.array([np.ones_like(x), x]), np.array([np.zeros_like(x), np.ones_like(x)])
@@ -83,21 +81,3 @@ def test_default_mesh_resolves_requested_modes(name: str, count: int) -> None:
     cue = SHAFTS.get(name, isotropic_kim())
     finer = modes(cue, 2 * count + 4).frequencies[:count]
     np.testing.assert_allclose(modes(cue, count).frequencies, finer, rtol=1e-6)
-
-
-def test_tip_modes_sum_to_inverse_mass_at_tip() -> None:
-    """The rigid-body part of the sum of a a' over the modes is the inverse mass, axial and transverse."""
-    cue = kim()
-    result = modes(cue, 5)
-    tip = tip_modes(result, cue.mass)
-    np.testing.assert_array_equal(tip.omega[:3], 0.0)
-    np.testing.assert_allclose(tip.omega[3:], result.omega, rtol=1e-15)
-    np.testing.assert_allclose(tip.amplitude[3:, 1], result.shape(0.0)[0], rtol=1e-13)
-    np.testing.assert_allclose(tip.rotation[3:], result.shape(0.0)[1], rtol=1e-13)
-    np.testing.assert_allclose(tip.amplitude[:, 0] @ tip.amplitude[:, 0], 1 / cue.mass, rtol=1e-14)
-    np.testing.assert_allclose(tip.approach @ tip.approach, cue.mass, rtol=1e-14)
-    x, weights = stations(cue)
-    s, centre = cue.section(x), cue.balance_point
-    inertia = weights @ (s.rhoA * (x - centre) ** 2 + s.rhoI)
-    rigid = tip.amplitude[:3, 1] @ tip.amplitude[:3, 1]
-    np.testing.assert_allclose(rigid, 1 / cue.shaft_mass + centre**2 / inertia, rtol=1e-12)
