@@ -11,7 +11,7 @@ from scipy.stats import qmc, spearmanr
 
 import cuefem as cf
 from cuefem.designs import Normal, Response, Span, Study, Vary, evaluate
-from cuefem.designs.scatter import Scatter, ScatterResult
+from cuefem.designs.scatter import Scatter, ScatterResult, missing_responses
 from cuefem.designs.sobol_indices import bootstrap_sobol_indices
 from tests.helpers.sweeps import SCATTER, resolution, vary, write_study
 
@@ -135,6 +135,17 @@ def test_designs_without_a_response_leave_the_others_answered(tmp_path: Path) ->
     assert np.isnan([squirt, mass]).all()
     assert end_mass == pytest.approx([0, 1], abs=0.1)
     assert found.spread["squirt"]["mean"] == found.responses["squirt"][:128][~lacks].mean()
+
+
+@pytest.mark.parametrize("number", [9, 10])
+def test_ten_designs_without_a_response_have_indices(number: int) -> None:
+    """That ten designs lack it, or ten have it: the Sobol indices of fewer say nothing."""
+    scatter = Scatter(STUDY, count=32, seed=1)
+    for number_of, other in ((np.nan, 0.0), (0.0, np.nan)):
+        values = np.full((32 * (2 + len(scatter.factors)), 1), other)
+        values[:number] = number_of
+        (missing,) = missing_responses(scatter, values)
+        assert np.isnan(missing.indices.total).all() == (number < 10)
 
 
 def test_invalid_designs_are_gaps(tmp_path: Path) -> None:

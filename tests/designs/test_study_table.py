@@ -12,7 +12,7 @@ from hypothesis.extra.numpy import arrays
 
 import cuefem as cf
 from cuefem.designs import Response
-from cuefem.designs.sweep import MAX_POINTS, SweepResult, SweepStatistics, _shown, sweep_charts
+from cuefem.designs.sweep import MAX_POINTS, SweepResult, SweepStatistics, _shown, _trend, sweep_charts
 from cuefem.files.defaults_report import Assumption
 from cuefem.results.uncertainty import RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.examples import examples
@@ -100,6 +100,12 @@ def test_best_squirt_has_the_uncertainty_of_a_verdict() -> None:
     assert relative == pytest.approx(math.hypot(own.uncertainty["model"], own.uncertainty["inputs"]), rel=1e-3)
     assert f"{math.degrees(own.squirt):.2f} ± {math.degrees(result.errors['squirt']):.2f}" in str(result)
     assert "<summary>1 assumption</summary>" in result.to_html(assumptions=[Assumption("", "ball 170 g")])
+
+
+def test_trend_has_a_rank_correlation_of_more_than_a_fifth() -> None:
+    """Of ten ranks: 1 - 6 * 130 / 990 is 0.212, and 1 - 6 * 132 / 990 is 0.2."""
+    beyond, at = np.array([2, 1, 8, 3, 4, 7, 6, 5, 9, 0]), np.array([0, 1, 9, 6, 8, 2, 4, 7, 5, 3])
+    assert [_trend(np.arange(10), each) for each in (beyond, -beyond, at)] == ["rises", "falls", ""]
 
 
 def test_chart_of_many_designs_shows_an_even_part() -> None:

@@ -55,8 +55,8 @@ error = "2 mm"
 [[squirt]]
 series = "a"
 offset = 0.3
-left = "1.5 deg"
-right = "1.7 deg"
+left = "1.7 deg"
+right = "1.5 deg"
 error = "0.1 deg"
 
 [[squirt]]
