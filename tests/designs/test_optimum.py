@@ -67,11 +67,13 @@ def test_change_is_the_root_mean_square_of_changes_over_their_ranges() -> None:
         assert replace(problem, choice={3: name}).change(shares) == pytest.approx(np.sqrt(square / 4), rel=1e-12)
 
 
-def test_pieces_of_a_trade_off_are_relative_to_its_ends() -> None:
-    """Two responses, the second of which no design changes."""
+def test_pieces_of_a_trade_off_are_relative_to_its_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two responses, the second of which no design changes: its other end is the best for the first one."""
     front = _Front(PROBLEM, {WALL: True, STIFFNESS: True}, 1, lambda _: None)
     designs = [SimpleNamespace(responses={"wall": wall, "tip_stiffness": 400.0}) for wall in (1.0, 2.0, 5.0)]
     assert front.pieces(designs).tolist() == [[0.25, 0.0], [0.75, 0.0]]
+    monkeypatch.setattr(_Front, "best_for", lambda self, k, *_: designs[k])
+    assert front.other_end(designs[2]) is designs[0]
 
 
 @cache

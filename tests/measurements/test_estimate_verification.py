@@ -112,7 +112,7 @@ def test_outlier_probability_of_certain_parameters_is_that_of_each_error() -> No
 def test_measurement_is_unchecked_where_others_predict_it_to_more_than_2_1_errors() -> None:
     """Ten errors of a weight must be 4.29 of prediction and measurement together, the root of 2 ln(10 / 0.001)."""
     cue = measured_cue(cheap_measurements()[0], priors=(CLOSED,))
-    for spread, number in ((2.09, 0), (2.12, 1)):
+    for spread, number in ((2.10, 0), (2.11, 1)):
         slopes = spread * cue.measurements[0].sd * np.eye(1, len(cue.parameters))
         assert len(linear_estimate(cue, slopes, np.zeros(1)).unchecked_measurements) == number
 
