@@ -116,6 +116,11 @@ def second_hit_scene(draw: RandomScene) -> cf.Scene:
     return replace(scene, stroke=draw.stroke(0.9))
 
 
+def stiffening(draw: RandomScene) -> cf.Scene:
+    """A tip whose force is a power of the indentation, beside a dome or a tangential spring of the base model."""
+    return draw.scene(draw.cue(), cf.PowerLawTip(draw.between(1.0, 2.5), draw.scaled(0.5, 6.0)))
+
+
 class Kind(NamedTuple):
     """A kind of scene, the tolerance of any number with ``STEPS`` steps, and seeds and steps of everyday tests."""
 
@@ -131,6 +136,7 @@ KINDS = {
     "all on the cue": Kind(all_cue_effects, 1e-4, (0, 1, 2, 3), STEPS),
     "Elevation": Kind(elevated, 2e-4, (0, 3), STEPS // 4),
     "Elevation, infinite friction": Kind(elevated_and_stuck, 3e-3, (2,), STEPS // 4),
+    "PowerLawTip": Kind(stiffening, 1e-4, (3, 5, 8), STEPS),
     "SecondHit": Kind(second_hit_scene, 5e-4, (6, 20, 24), STEPS),  # 2, 4 and 2 touches
 }
 AT = cf.Resolution(3, 14, MODES, 2 * STEPS)

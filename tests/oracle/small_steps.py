@@ -59,6 +59,13 @@ class Steps:
         reduced_mass = 1 / (1 / self.ball.mass + 1 / self.mass)
         self.time = self.tip.contact_time
         self.stiffness = reduced_mass * (math.pi / 2 * (1 + self.tip.restitution) / self.time) ** 2
+        self.exponent, self.scale = 1.0, self.stiffness  # of the force over a power of the indentation
+        law = self._effect(cf.PowerLawTip)
+        if law is not None:
+            self.exponent, q = law.exponent, law.exponent + 1
+            loading = math.sqrt(math.pi) * math.gamma(1 + 1 / q) / math.gamma(0.5 + 1 / q)  # int ds/sqrt(1 - s^q)
+            deepest = self.time * law.speed / (1 + self.tip.restitution) / loading
+            self.scale = q / 2 * reduced_mass * law.speed**2 / deepest**q
         self.step = self.time / steps
         self.planes = 2 if self.raised else 1
         self.n_modes = len(self.beam.omega)
@@ -137,7 +144,7 @@ class Steps:
         z = np.zeros(2 * n)
         z[n] = self.stroke.speed * math.sqrt(self.mass)
         initial_energy = z[n] ** 2 / 2
-        max_depth = F_t = previous_shift = time = separation = force = damping_loss = 0.0
+        max_depth = F_t = previous_shift = time = separation = overlap = damping_loss = 0.0
         first: float | None = None  # first separation, from which the window of a second hit counts
         touching, touches, tangent = False, list[float](), np.zeros(len(self.rows))
         while True:
@@ -145,13 +152,14 @@ class Steps:
             time += h / 2
             depth = -float(self.row_n @ z[:n])
             max_depth = max(max_depth, depth)
-            previous_force = force
-            force = k * depth if depth == max_depth else k / e**2 * (depth - (1 - e**2) * max_depth)
+            previous_overlap = overlap
+            overlap = depth if depth == max_depth else (depth - (1 - e**2) * max_depth) / e**2
+            force = self.scale * math.copysign(abs(overlap) ** self.exponent, overlap)
             if force > 0 and not touching:
                 touching = True
                 touches.append(time)
             elif force <= 0 and touching:  # where the line through the last two passes zero
-                separation = time - h * force / (force - previous_force)
+                separation = time - h * overlap / (overlap - previous_overlap)
                 touching, first = False, separation if first is None else first
             if not touching and first is not None and (window is None or time > first + window.window):
                 break
