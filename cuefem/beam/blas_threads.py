@@ -47,6 +47,7 @@ class _OneThread(ContextDecorator):
                 for library, threads in self._before.values():
                     library.set_num_threads(threads)
                 self._before.clear()
+                OpenBLASController.clear_controlling_thread(force=True)  # so that any thread may limit it afterwards
 
 
 one_blas_thread = _OneThread()

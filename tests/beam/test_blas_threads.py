@@ -75,3 +75,14 @@ def test_blas_threads_are_restored_after_concurrent_uses() -> None:
         during = [*pool.map(use, (True, False))]
         assert blas_threads() == {2}
     assert during[1] == {1}
+
+
+def test_limits_of_others_hold_after_a_use_in_a_living_thread() -> None:
+    def use() -> None:
+        with one_blas_thread:
+            pass
+
+    with ThreadPoolExecutor(1) as pool:
+        pool.submit(use).result()
+        with threadpool_limits(2, user_api="blas"):
+            assert blas_threads() == {2}
