@@ -18,7 +18,7 @@ from cuefem.scene.solved_scene import MIN_RESTITUTION
 MIN_LEATHER_RESTITUTION = 0.1  # leather vibrates on the ball below it
 ANNULI_MARGIN = 1.05  # annuli up to 1.05 times the largest indentation
 # Steps in a head-on contact time, and those of a leather tip that does not slip as a whole: the error of squirt is
-# below 0.1 % (tests/contact/test_golden_strikes.py). The impulse that begins infinite friction needs twice as many.
+# below 0.1 % (tests/contact/test_stored_answers.py). The impulse that begins infinite friction needs twice as many.
 STEPS, LEATHER_STEPS, STICKING_STEPS = 400, 200, 800
 
 

@@ -1,7 +1,7 @@
 """Leather tips: contact time, partial slip against small steps, continuity, squirt of an exact chain (verification).
 
 Small steps (`tests.oracle.partial_slip`) have no phases; scenes include gross slip, contact on the rim, and slow and
-fast strokes. Tangential losses, energies and convergence: test_golden_strikes.py.
+fast strokes. Tangential losses, energies and a constant stiffness: test_stored_answers.py.
 """
 
 from __future__ import annotations
