@@ -116,7 +116,7 @@ def changed(node: ast.AST, in_function: bool = True) -> ast.expr | ast.AugAssign
         case ast.BinOp(ast.JoinedStr() | ast.Constant(str()), _, _):
             return None  # no text has another operator
         case ast.BinOp(left, ast.Add() | ast.Sub(), right) if is_tolerance(left) or is_tolerance(right):
-            return None  # a number and its round-off
+            return None  # a number beside its round-off
         case ast.BinOp(left, op, right) if type(op) in SWAPS:
             return ast.BinOp(left, SWAPS[type(op)](), right)
         case ast.AugAssign(target, op, value) if type(op) in SWAPS:
@@ -144,8 +144,8 @@ def is_order_of_magnitude(value: object) -> bool:
 
 
 def is_tolerance(node: ast.expr) -> bool:
-    """Whether an expression is a small power of ten."""
-    return isinstance(node, ast.Constant) and is_order_of_magnitude(node.value) and node.value < 1
+    """Whether an expression is a very small power of ten, such as round-off."""
+    return isinstance(node, ast.Constant) and is_order_of_magnitude(node.value) and node.value < 1e-6
 
 
 def expressions(node: ast.AST, in_function: bool = False) -> Iterator[tuple[ast.expr | ast.AugAssign, bool]]:
@@ -285,7 +285,8 @@ class Reach(NamedTuple):
         homes = {test_file(name) for name in reached}
         beside = {name for name in self.seconds if test_file(name) in homes}
         ordered = [*self.ordered(first), *self.ordered(reached - first), *self.ordered(beside - reached - first)]
-        until, most = itertools.accumulate(self.seconds[name] for name in ordered), SHARE * sum(self.seconds.values())
+        until = itertools.accumulate(self.seconds[name] for name in ordered)
+        most = SHARE * sum(self.seconds.values())
         return [name for name, end in zip(ordered, until, strict=True) if end < most]
 
     def ordered(self, names: set[str]) -> list[str]:

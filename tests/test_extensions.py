@@ -57,6 +57,10 @@ def test_added_question_is_command_section_and_call(monkeypatch: pytest.MonkeyPa
     report = cf.report(scene, details=True)
     assert report.to_dict()["weight"] == {"weight": newtons}
     assert "Weight of the cue" in str(report)
+    too_soft = replace(
+        kim_scene(0.3), tip=cf.Tip(), stroke=cf.Stroke(14.0), effects=(cf.LeatherTip(6e-3, 9.5e-3, 3e6),)
+    )
+    assert [*cf.report(too_soft).sections] == ["modes", "weight"]  # no contact
     session = Session(Design("this", kim_scene(0.3)))
     session.results.own["answers"] = report
     for page in (report.to_html(), sections_markup(session)):

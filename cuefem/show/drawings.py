@@ -68,8 +68,7 @@ def drawn_segments(scene: Scene) -> tuple[Segment, ...]:
         return segments
     tip = scene.leather_tip
     diameter = tip.diameter_on(segments[0].tip_diameter)
-    # a drawing and its legend show no shear modulus
-    below = [(layer.height, Material(layer.E, layer.E, layer.rho)) for layer in tip.layers[::-1]]
+    below = [(layer.height, Material(layer.E, layer.E / 2 / (1 + layer.nu), layer.rho)) for layer in tip.layers[::-1]]
     leather = tip.height - math.fsum(height for height, _ in below)
     in_front = [(leather, MATERIALS["leather"].material), *below]
     return (*(Segment(height, diameter, diameter, of) for height, of in in_front), *segments)

@@ -5,11 +5,12 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from cuefem.designs import Normal, Span
 from cuefem.designs.study_file import load_study
 from cuefem.files import InputError
 from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.invalid_input import assert_refused, rejected, stored_rows
-from tests.helpers.sweeps import GRID, write_study
+from tests.helpers.sweeps import GRID, SCENE, STRIKES, write_study
 
 LEATHER = ("6 mm", "12.75 mm", "12.75 mm", 'material = "leather"')
 TENON = 'tip_bore = "8 mm"\nbutt_bore = "8 mm"\ncore = "ash"\nmaterial = "melamine"'
@@ -100,6 +101,21 @@ def test_invalid_key_of_the_cue_is_rejected(tmp_path: Path, request: pytest.Fixt
         profile = PROFILE.replace(" [mm]", "") if row.startswith("length_unit") else PROFILE
         messages[row] = rejected(tmp_path, "study", of_profile(tmp_path, row, profile))
     assert_refused("study_keys", messages, request)
+
+
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")  # the same cone twice, one behind the other
+def test_study_file_ranges_are_read(tmp_path: Path) -> None:
+    text = STRIKES.replace('low = "0 mm"\nhigh = "13 mm"', 'median = "5 mm"\nsd = "1 mm"')
+    text = text.replace("low = 0.7\nhigh = 1.3", 'median = 1\nsd = 0.2\nspacing = "logarithmic"')
+    text += '[[vary]]\npath = "cue.segments[0].length"\nlow = "-5 mm"\nhigh = "5 mm"\nshift = true\n'
+    text += 'compensating_path = "cue.segments[1].length"\n'
+    two = SCENE.replace("[tip]", SCENE[SCENE.index("[[") : SCENE.index("[tip]")] + "[tip]")
+    result = load_study(write_study(tmp_path, text, two))
+    bore, modulus, length = result.vary
+    assert (bore.range, modulus.range) == (Normal(5e-3, 1e-3), Normal(1, 0.2, logarithmic=True))
+    assert (length.range, length.shift) == (Span(-5e-3, 5e-3), True)
+    assert length.compensating_path == ("cue.segments[1].length",)
+    assert result.units[:3] == ("m", "", "m")
 
 
 def test_result_saves_what_the_command_writes(tmp_path: Path) -> None:

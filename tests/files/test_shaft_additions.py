@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 import cuefem as cf
 from cuefem.cue.materials import material
 from cuefem.files.shaft_additions import with_additions
-from tests.helpers.command_line import as_json
+from tests.helpers.command_line import as_json, call
 from tests.helpers.examples import examples
 
 BARE = "x [mm],diameter [mm]\n0,12\n700,21\n"
@@ -50,3 +50,14 @@ def test_ferrule_without_tenon_text_reports_the_default_tenon(tmp_path: Path) ->
         as_json("modes", shaft(tmp_path), "--ferrule", f"25 mm melamine{x}")["assumptions"] for x in ("", ", no tenon")
     ]
     assert ["tenon" in " ".join(each) for each in assumed] == [True, False]
+
+
+def test_load_body_mass_equals_the_option(tmp_path: Path) -> None:
+    csv, ounces = shaft(tmp_path), 15 * 0.028349523125
+    assert [cf.load(csv, body_mass=mass).body_mass for mass in ("15 oz", ounces, 0)] == pytest.approx(
+        [ounces, ounces, 0]
+    )
+    assert call("convert", csv, tmp_path / "cue.toml", "--body-mass", "15 oz")[0] == 0
+    assert cf.load(tmp_path / "cue.toml") == cf.load(csv, body_mass="15 oz")
+    cf.save(cf.usual_scene(CONE), tmp_path / "scene.toml")
+    assert cf.load(tmp_path / "scene.toml", body_mass="1 lb", material="ash").cue.body_mass == pytest.approx(0.45359237)

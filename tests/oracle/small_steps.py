@@ -59,7 +59,7 @@ class Steps:
         reduced_mass = 1 / (1 / self.ball.mass + 1 / self.mass)
         self.time = self.tip.contact_time
         self.stiffness = reduced_mass * (math.pi / 2 * (1 + self.tip.restitution) / self.time) ** 2
-        self.exponent, self.scale = 1.0, self.stiffness  # of the force over a power of the indentation
+        self.exponent, self.scale = 1.0, self.stiffness  # force = scale * overlap^exponent
         law = self._effect(cf.PowerLawTip)
         if law is not None:
             self.exponent, q = law.exponent, law.exponent + 1

@@ -1,4 +1,4 @@
-"""Contact state of strokes with a leather tip, and of phases and losses (properties)."""
+"""Contact state of strokes with and without a leather tip, and of phases and losses (properties)."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -23,6 +23,15 @@ def test_regime_with_long_partial_slip_warns(speed: float, offset: float, regime
     outcome, close = (cf.strike(replace(LEATHER, stroke=cf.Stroke(speed, b))) for b in (offset, 0.2))
     assert outcome.regime == regime
     assert bool(regime_warning(regime)) == (regime != "stick") == (outcome.squirt / offset > 1.2 * close.squirt / 0.2)
+
+
+@pytest.mark.parametrize(
+    ("offset", "regime"), [(0.0, "stick"), (0.45, "stick"), (0.575, "gross slip"), (0.6, "miscue")]
+)
+def test_spring_tip_slips_beyond_the_friction_cone(offset: float, regime: str) -> None:
+    """The cone of a friction of 0.7 ends at b/R 0.573."""
+    scene = cf.Scene(MAPLE, LEATHER.ball, cf.Tip(0.73, 0.7, 1.1e-3), cf.Stroke(2.0, offset))
+    assert cf.strike(scene).regime == regime
 
 
 # Phases with their shares of the normal impulse in %; friction loss in % of the ball's energy; state.
