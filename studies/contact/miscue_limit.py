@@ -150,7 +150,7 @@ def check() -> list[tuple[float, float, float]]:
     rows = []
     for offset in (0.5, 0.56, 0.6, 0.64):
         struck = pool_scene(strokes.plain_maple(), 1.2e-3, offset, (strokes.DOME, strokes.SHEAR))
-        stepped = solve_small_steps(struck, 60, 1000).squirt
+        stepped = solve_small_steps(struck, 150, 1000).squirt
         rows.append((offset, share(struck, cf.strike(struck).squirt), share(struck, stepped)))
     return rows
 
@@ -196,7 +196,7 @@ def text() -> str:
         "## Check",
         "Transverse impulse over μ times the normal impulse on solid maple, a spring tip with dome and compliance, "
         "by `cf.strike` and by "
-        "the independent oracle (scikit-fem's beam, small steps): "
+        "the independent oracle (scikit-fem's beam, 150 modes, small steps): "
         + "; ".join(f"{a:.4f} and {b:.4f} at b/R {offset:g}" for offset, a, b in check())
         + ".",
         "## Measurement",

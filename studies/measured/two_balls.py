@@ -108,7 +108,7 @@ def check() -> tuple[float, float]:
         heavier = on_ball(base, mass)
         time = TIME * math.sqrt(heavier.reduced_mass / base.reduced_mass)
         scene = replace(heavier, tip=replace(heavier.tip, contact_time=time))
-        results.append((float(cf.strike(scene).squirt), solve_small_steps(scene, 60, 1000).squirt))
+        results.append((float(cf.strike(scene).squirt), solve_small_steps(scene, 150, 1000).squirt))
     (few, stepped_few), (many, stepped_many) = results
     return math.log(many / few), math.log(stepped_many / stepped_few)
 
@@ -171,8 +171,8 @@ def text() -> str:
         table(["input", "change of squirt", "range"], rows),
         f"The lumped cue of equal squirt changes by {100 * math.expm1(maple.lumped):+.1f} %. A spring tip of one "
         f"stiffness with dome and compliance: "
-        f"ln ratio {coupled:+.4f} by `cf.strike`, {oracle:+.4f} by the independent oracle (scikit-fem's beam, small "
-        f"steps).",
+        f"ln ratio {coupled:+.4f} by `cf.strike`, {oracle:+.4f} by the independent oracle (scikit-fem's beam, "
+        "150 modes, small steps).",
         "## Experiment",
         "1. Weigh two balls of one diameter: an ordinary cue ball (156 to 170 g) and a heavier one (about 200 g, "
         "sold for coin-operated tables; "
