@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import gc
 import logging
 import platform
 import warnings
@@ -64,6 +65,7 @@ def serve(
     app.add_api_route("/guide", handbook, response_class=HTMLResponse)
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])
     app.add_middleware(RequestValidation, origins=(f"http://{HOST}:{port}", f"http://localhost:{port}"))
+    app.on_delete(_return_free_memory)
     app.on_startup(lambda: announce(f"http://{HOST}:{port}/"))
     ui.run(
         host=HOST,
@@ -78,6 +80,13 @@ def serve(
         tailwind=False,
         show_welcome_message=False,
     )
+
+
+def _return_free_memory() -> None:
+    """Return what a page that was closed has held to the system: glibc keeps most of it."""
+    gc.collect()
+    if "glibc" in platform.libc_ver():
+        ctypes.CDLL(None).malloc_trim(0)
 
 
 def _share_one_heap() -> None:
